@@ -144,3 +144,54 @@ def test_a_changed_helper_is_solved_again(tmp_path, monkeypatch):
     # w of the sphere goes as E^(-2/3); a grid of 16 cells is off by less than a tenth.
     assert float(stiffer.approach[0, 0] / first.approach[0, 0]) == pytest.approx(8 ** (-2 / 3), rel=0.1)
     monkeypatch.delitem(sys.modules, "my_study")
+
+
+def test_functions_of_a_script_within_arguments(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(textwrap.dedent("""
+        import sys, asperity as asp
+        def rising(t):
+            return 1e-3 * (1.0 + t)
+        given = dict(surface=asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=0.01), material=asp.Elastic(young=1e6, poisson=0.5), times=[1.0])
+        if "none" in sys.argv:
+            sys.modules["cloudpickle"] = None
+        try:
+            data = asp.study(given, {"load": {"rising": rising}}, progress=False)
+            print(data.status.values.tolist(), round(data["load"][0, -1].item(), 12))
+        except asp.CaseError as error:
+            print(error)
+    """))
+    without = subprocess.run([sys.executable, "-W", "ignore", script, "none"], capture_output=True, text=True, timeout=60)
+    assert "'rising' of this script or notebook cannot be sent to another process: install cloudpickle" in without.stdout, without.stderr
+    pytest.importorskip("cloudpickle")
+    told = subprocess.run([sys.executable, "-W", "ignore", script], capture_output=True, text=True, timeout=60)
+    assert told.stdout.startswith("['complete'] 0.002"), (told.stdout, told.stderr)
+
+
+def test_a_wrong_case_is_an_error_at_once(tmp_path):
+    case = """
+    [domain]
+    cells = [16, 16]
+    size = ["1 mm", "1 mm"]
+    [[surface]]
+    kind = "sphere"
+    radius = "10 mm"
+    [[body]]
+    poisson = 0.7
+    material = { model = "elastic", young = "1 MPa" }
+    [load]
+    control = "load"
+    history = { kind = "step", value = "1 mN" }
+    [time]
+    end = "1 s"
+    steps = 1
+    """
+    with pytest.raises(asp.CaseError, match="no point can be solved.*(\n.*)*poisson"):
+        asp.study(case, {"load.history.value": ["1 mN", "2 mN"]}, folder=tmp_path / "never")
+    # What varies may be what the case lacks, and a value that is wrong is that of its point.
+    cured = asp.study(case, {"body[0].poisson": [0.3, 0.9]}, progress=False)
+    assert cured.status.values.tolist() == ["complete", "failed"]
+    ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=0.01)
+    with pytest.raises(asp.CaseError, match="no point can be solved: .*material is 3"):
+        asp.study(dict(surface=ball, material=3, times=[1.0]), {"load": [1e-3, 2e-3]}, folder=tmp_path / "never")
+    assert not list(tmp_path.glob("never/*.zarr"))

@@ -167,7 +167,7 @@ class Walk:
         source = hashlib.sha256(Path(str(module.__file__)).read_bytes()).digest()
         others: dict[str, Any] = {}
         for held in list(vars(module).values()):
-            other = held if isinstance(held, types.ModuleType) else sys.modules.get(str(getattr(held, "__module__", "")))
+            other = held if isinstance(held, types.ModuleType) else _home(held)
             if other is not None and other is not module and other.__name__ not in others:
                 others[other.__name__] = self.parts(other)
         return module.__name__, source, sorted(others.items())
@@ -187,7 +187,7 @@ class Walk:
             self.unknown.append(f"an object of the type {name}")
             return name
         if isinstance(made, str):
-            module = sys.modules.get(str(getattr(value, "__module__", "")))
+            module = _home(value)
             return name, made, None if module is None else self.parts(module)
         function, arguments, *state = made
         rest = [list(one) if isinstance(one, Iterator) else one for one in state]
@@ -202,6 +202,14 @@ def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
     for held in code.co_consts:
         if isinstance(held, types.CodeType):
             yield from _codes(held)
+
+
+def _home(value: Any) -> types.ModuleType | None:
+    """The module that an object names as its own."""
+    try:
+        return sys.modules.get(str(value.__module__))
+    except Exception:  # objects may answer with anything
+        return None
 
 
 def _is_full(cell: Any) -> bool:

@@ -29,6 +29,7 @@ from ._core import CaseError
 from ._declared import check
 from ._parameters import call
 from ._sealed import Sealed
+from ._spoken import spoken
 from ._shifts import Shift
 from ._units import frequency
 from ._words import Measure
@@ -67,7 +68,8 @@ class Material(Sealed):
             self._hold(window=_window(self.window))
         own = {key: value for key, value in self._given.items() if key in _OF_BODY}
         keys = {**own, "name": str(own.get("name", type(self).__name__)), "material": self._material()}
-        self._hold(_keys=keys, _body=_core.Body(keys))
+        with spoken():
+            self._hold(_keys=keys, _body=_core.Body(keys))
 
     @property
     def _given(self) -> dict[str, Any]:

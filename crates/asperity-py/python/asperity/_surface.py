@@ -21,6 +21,7 @@ from ._grid import OnGrid
 from ._histories import one_of
 from ._parameters import call, parameters
 from ._sealed import Named, ReadOnlyArrays
+from ._spoken import spoken
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
@@ -653,7 +654,8 @@ def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: d
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
     given = {"size" if name == "sides" else name: value for name, value in (keys or made or {}).items()}
-    heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
+    with spoken():
+        heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
     surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
     if made is not None:
         object.__setattr__(surface, "_made", {"kind": kind, **made})

@@ -19,7 +19,7 @@ from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._grid import OnGrid
 from ._histories import one_of
-from ._problem import hardness_of
+from ._problem import hardness_of, in_json
 from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
@@ -202,7 +202,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         of_cells = isinstance(self.hardness, np.ndarray)
         kernel = "half-space" if self._planned.kernel is None else "given"
         told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history}
-        return {**known, **told, **({} if kernel == "given" else {"given": self._case})}
+        return {**known, **told, **({} if kernel == "given" else {"given": in_json(self._case)})}
 
     @property
     def _case(self) -> dict[str, Any]:

@@ -99,7 +99,7 @@ class Problem:
     def given(self, shape: Surface, keys: dict[str, Any]) -> dict[str, Any]:
         """The keys of the case as they were given, without arrays: surfaces by what they were made or read from."""
         bodies = [{key: value for key, value in body.items() if key != "hardness_array"} for body in keys["body"]]
-        found: dict[str, Any] = _in_json({**keys, "surface": shape._origin, "body": bodies})
+        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies})
         return found
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
@@ -219,12 +219,12 @@ class Solve(Run, InStages):
             self.fields = ("pressure", "contact_pressure") if attracted else ("pressure", *along)
 
 
-def _in_json(value: Any) -> Any:
+def in_json(value: Any) -> Any:
     """Keys without infinite numbers, which JSON does not have: as text, as a case file takes them too."""
     if isinstance(value, dict):
-        return {key: _in_json(one) for key, one in value.items()}
+        return {key: in_json(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_in_json(one) for one in value]
+        return [in_json(one) for one in value]
     return str(value) if isinstance(value, float) and not np.isfinite(value) else value
 
 

@@ -24,7 +24,7 @@ ZENER = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=
     [
         (dict(quantities=["plastic_volume"]), 'give plasticity="accumulate"'),
         (dict(tolerance=-1.0), "tolerance is -1.0"),
-        (dict(load=-1.0), "value of the history is -1.0, but must be a force not less than 0, such as 0.5 N"),
+        (dict(load=-1.0), "value of the history of the load is -1.0, but must be a force not less than 0, such as 0.5 N"),
         (dict(friction=0.3), "add tangential=asperity.tangential(...)"),
         (dict(adhesion=asp.Adhesion(work=1.0, range=1e-9)), "allow_unresolved=True"),
         (dict(wear=1e-15), "wear=asperity.Wear(..., velocity=...), such as 0.1 m/s"),

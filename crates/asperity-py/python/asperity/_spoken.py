@@ -37,10 +37,10 @@ _RULES: list[tuple[str, str]] = [
     (r"\[wear\] (\w+) = \"([^\"]*)\"", r"wear=asperity.Wear(..., \1=...), such as \2,"),
     (r"\[wear\]", "wear=asperity.Wear(...)"),
     (r"\[leakage\]", "fluid=asperity.Fluid(...)"),
-    # load.history.value: the value of the load.
-    (r"\bload\.history\.(\w+)", r"\1 of the history"),
-    (r"\bload\.history\b", "the history"),
-    (r"\bload\.control\b", "the control"),
+    # What is prescribed, be it a load, a pressure or an approach, is the table [load] of a case.
+    (r"\bload\.history\.(\w+)", r"\1 of the history of the load"),
+    (r"\bload\.history\b", "the history of the load"),
+    (r"\bload\.control\b", "the control of the load"),
     (rf"\b(?:{_PLAIN})\.([a-z_]+)", r"\1"),
     (rf"\b({_OBJECTS})\.([a-z_]+)", r"\2 of \1"),
     (r"\bleakage\.([a-z_]+)", r"\1 of the fluid"),

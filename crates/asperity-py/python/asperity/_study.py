@@ -322,16 +322,15 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
 
 def _check_arguments(options: Any, fixed: dict[str, Any], points: list[dict[str, Any]]) -> None:
     """Refuses arguments that are wrong in every point; those of a single one are the error of that point."""
-    first = None
+    first: str | None = None
     for point in points:
         try:
             options(**{**fixed, **point}).parts()
-        except CaseError as error:
-            first = first or error
+        except Exception as error:  # of a function of time too
+            first = first or (str(error) if isinstance(error, CaseError) else f"{type(error).__name__}: {error}")
         else:
             return
-    if first is not None:
-        raise CaseError(f"no point can be solved: {first}") from None
+    raise CaseError(f"no point can be solved: {first}")
 
 
 def _fault(common: dict[str, Any], keys: list[str]) -> str | None:

@@ -139,7 +139,8 @@ def test_quantities_reach_xarray_and_studies(flattened, tmp_path):
     if pytest.importorskip("zarr", minversion="3"):
         flattened.save(tmp_path / "saved.zarr")
         stored = xarray.open_zarr(tmp_path / "saved.zarr").drop_vars("field_step", errors="ignore")
-        for name in ours.variables:
+        # In memory the load has a second name, which is no method of datasets.
+        for name in ours.drop_vars("normal_load").variables:
             assert np.allclose(ours[name], stored[name], rtol=1e-15, equal_nan=True), name
             assert ours[name].dims == stored[name].dims and ours[name].attrs["units"].replace("^", "") == stored[name].attrs["units"], name
     data = asp.study(CASE, {"load.history.peak": ["2 mN", "4 mN"]})

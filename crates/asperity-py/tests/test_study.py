@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 
 import numpy as np
@@ -277,7 +278,8 @@ def test_a_study_runs_from_a_script_without_a_guard_and_with_a_function_of_it(tm
         ({"load": [0.001]}, dict(fields=["stress"]), "stress"),
         ({"load": [0.001]}, dict(workers=0), "workers"),
         ({"load": [0.001]}, dict(threads=1.5), "threads"),
-        ({"load": [lambda: 0]}, {}, "sent to another process"),
+        ({"load": [lambda: 0]}, {}, "no point can be solved"),
+        ({"title": [threading.Lock()], "load": [0.001]}, {}, "sent to another process"),
     ],
 )
 def test_wrong_studies_are_refused(sphere, over, change, words):

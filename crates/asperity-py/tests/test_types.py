@@ -26,6 +26,12 @@ asp.Stage(load=1.0, until=("approach", 2e-6))
 radius: float = ball.radius + asp.ramp(1.0, duration=2.0).duration
 text: str = asp.solve(ball, asp.Elastic(young=1e6, poisson=0.5), load=lambda t: 2.0 * t, breaks=[1.0], times=[2.0]).methods(bibtex=True)
 misfit = asp.Relaxation(lambda t: 1e6, window=(1.0, 2.0), poisson=0.5).fit
+load = np.float32(1.0)
+asp.elastic(ball, np.int64(10**6), load=load, size=np.ones(2)).to_xarray().pressure.mean()
+asp.solve(ball, asp.Elastic(young=1e6, poisson=0.5), load=asp.ramp(load, duration=np.float32(1.0)), times=[1.0]).leakage().leak_rate.sum()
+below = asp.stress(result, depths="auto").to_xarray("mises")
+asp.leakage(np.ones((8, 8)), size=(1.0, 1.0), sides="closed").to_xarray()
+held = result.field("gap", time=1.0, method="nearest")
 ball.level().fill("nearest").filter(shortest=2e-6, edge="gaussian").window().flip("x")
 """
 WRONG = [
@@ -45,6 +51,8 @@ WRONG = [
     'asp.leakage(np.ones((8, 8)), size=(1.0, 1.0), sides="perodic")',
     'asp.Layer(thickness=1.0, material=asp.Elastic(young=1e6, poisson=0.5), interface="glued")',
     'asp.Stage(load=1.0, until="contact-los")',
+    'asp.open("a.zarr").field("gap", time=1.0, method="linear")',
+    'asp.elastic(object(), 1e6, load=1.0)',
 ]
 
 

@@ -14,7 +14,10 @@ approach is zero at first touch.
 True
 """
 
+from typing import TYPE_CHECKING
+
 from . import compat as compat
+from ._arrays import meant
 from ._adhesion import Adhesion as Adhesion
 from ._flash import Flash as Flash
 from ._fluid import Fluid as Fluid
@@ -49,4 +52,11 @@ from ._tangential import Friction as Friction, Tangential as Tangential, tangent
 from ._wear import Wear as Wear
 from ._threads import set_threads as set_threads, threads as threads
 
-__all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name not in ("open", "plot")))
+if not TYPE_CHECKING:  # where it would hide misspelt names
+
+    def __getattr__(name):
+        near = "" if name.startswith("_") else meant(name, [*__all__, "open", "plot", "compat"])
+        raise AttributeError(f"module 'asperity' has no attribute {name!r}{near}")
+
+
+__all__ = sorted(name for name in globals() if name == "__version__" or (name[0] != "_" and name not in ("open", "plot", "meant", "TYPE_CHECKING")))

@@ -14,8 +14,10 @@ from ._core import CaseError
 from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
 AnyPath = str | os.PathLike[str]
+#: A real number of Python or numpy.
+Scalar = float | np.floating[Any] | np.integer[Any]
 #: Lengths of a domain along x and y [m], or of a line.
-Size = float | Sequence[float] | None
+Size = Scalar | Sequence[float] | Sequence[Scalar] | npt.NDArray[Any] | None
 ArrayLike = npt.ArrayLike
 AnyArray = npt.NDArray[Any]
 Floats = npt.NDArray[np.float64]

@@ -13,22 +13,26 @@ from typing import TYPE_CHECKING, Any, TypedDict, overload
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
+from ._arrays import AnyArray, AnyPath, ArrayLike, Counts, Floats, Labels, Scalar, Size, array, as_plane, cells_of, check_places, choice, count, field, frozen, number
 from ._columns import FIELDS, ROW, frame, told
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._grid import OnGrid
 from ._histories import one_of
-from ._problem import hardness_of
+from ._problem import hardness_of, in_json
 from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
-from ._surface import Surface, check_boundary, per_cell, surface_of
+from ._spoken import spoken
+from ._states import State, touching
+from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
 from .plot import CurvePlots, Plots
 
 if TYPE_CHECKING:
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    import xarray
     from typing_extensions import Unpack
 
 #: A kernel: numbers, or a function of two coordinates that gives them.
@@ -52,7 +56,7 @@ class ConvergenceHistory(ReadOnlyArrays):
     def __len__(self) -> int:
         return len(self.iteration)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> pandas.DataFrame:
         """The history as pandas.DataFrame."""
         return frame(vars(self)).set_index("iteration")
 
@@ -65,6 +69,7 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
+        self.origin, self.history = surface._origin, surface.history
         self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
@@ -74,7 +79,8 @@ class _Planned:
         """The plan; a copy makes its own when it needs one."""
         limit = self.hardness if isinstance(self.hardness, float) else math.inf
         cells = as_plane(self.hardness) if isinstance(self.hardness, np.ndarray) else None
-        return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
+        with spoken():
+            return _core.Elastic(gap=as_plane(self.gap), size=list(self.size), hardness=limit, hardness_map=cells, kernel=self.kernel, **self.keys)
 
     def __getstate__(self) -> dict[str, Any]:
         return {name: value for name, value in self.__dict__.items() if name != "core"}
@@ -86,7 +92,9 @@ class _Planned:
 
     def solve(self, control: str, value: float, start: Floats | None, history: bool, out: Any) -> ElasticContact:
         """One contact."""
-        found = self.core.solve(control, value, None if start is None else as_plane(start), history)
+        core = self.core
+        with spoken():
+            found = core.solve(control, value, None if start is None else as_plane(start), history)
         fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
         lent = {name: out[name].view() for name in fields if name in out}
         for name, values in lent.items():
@@ -183,23 +191,42 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         self._whole("a map of the spots")
         return _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary).reshape(self.pressure.shape)
 
+    def _state(self) -> State:
+        self._whole("its state")
+        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure))
+
     @property
     def _setup(self) -> dict[str, Any]:
         """The contact in numbers, as a result has them."""
         known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
         of_cells = isinstance(self.hardness, np.ndarray)
         kernel = "half-space" if self._planned.kernel is None else "given"
-        return {**known, "hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel}
+        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history}
+        return {**known, **told, **({} if kernel == "given" else {"given": in_json(self._case)})}
 
-    def methods(self, *, bibtex: bool = False) -> str:
+    @property
+    def _case(self) -> dict[str, Any]:
+        """A case of the same contact: an elastic body of that contact modulus on a rigid one."""
+        body: dict[str, Any] = {"poisson": 0.0, "material": {"model": "elastic", "young": self.contact_modulus}}
+        limit = {"hardness": self.hardness} if isinstance(self.hardness, float) else {}
+        return {
+            "domain": {"cells": list(self.cells), "size": list(self.size), "boundary": self.boundary},
+            "surface": self._planned.origin,
+            "body": [{**body, **limit}],
+            "load": {"control": "load", "history": {"kind": "step", "value": self.load}},
+            "solver": {"method": self.method, "tolerance": self.tolerance},
+            "time": {"times": [1.0]},
+        }
+
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
         """A paragraph on what was computed, as :meth:`Result.methods`."""
-        return _result([self], False).methods(bibtex=bibtex)
+        return _result([self], False).methods(bibtex=bibtex, case=case)
 
     def to_result(self) -> Result:
         """The contact as a result of one row at the time 0, with the fields "pressure", "gap" and "displacement"."""
         return _result([self], True)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The contact as xarray.Dataset with coordinates and units."""
         return self.to_result().to_xarray().isel(time=0, field_time=0, drop=True).drop_vars(["time_error", "stage"])
 
@@ -268,11 +295,11 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     def __iter__(self) -> Iterator[ElasticContact]:
         return iter(self._contacts)
 
-    def to_dataframe(self) -> Any:
+    def to_dataframe(self) -> pandas.DataFrame:
         """The numbers as pandas.DataFrame, a row for each contact."""
         return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The numbers and the pressures as xarray.Dataset over what was prescribed, `load`, `mean_pressure` or `approach`, with the values
         as they were given: curves of other surfaces under the same values have the same index."""
         index = {"pressure": "mean_pressure"}.get(self._control, self._control)
@@ -297,7 +324,7 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
 class _How(TypedDict, total=False):
     """What the contacts of :func:`elastic` have in common, one or several."""
 
-    gap: Any
+    gap: SurfaceLike | None
     size: Size
     hardness: float | ArrayLike | None
     boundary: Boundary
@@ -335,16 +362,16 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
 
 @overload
 def elastic(
-    surface: Any = ..., contact_modulus: float | None = ..., *, load: float | None = ..., pressure: float | None = ..., approach: float | None = ...,
+    surface: SurfaceLike | None = ..., contact_modulus: Scalar | None = ..., *, load: Scalar | None = ..., pressure: Scalar | None = ..., approach: Scalar | None = ...,
     out: Floats | Mapping[str, Floats] | None = ..., **how: Unpack[_How]
 ) -> ElasticContact: ...
 @overload
 def elastic(
-    surface: Any = ..., contact_modulus: float | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
+    surface: SurfaceLike | None = ..., contact_modulus: Scalar | None = ..., *, load: _Several = ..., pressure: _Several = ..., approach: _Several = ..., **how: Unpack[_How]
 ) -> ElasticCurve: ...
 def elastic(
-    surface: Any = None, contact_modulus: float | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
-    gap: Any = None, size: Size = None, hardness: float | ArrayLike | None = None,
+    surface: SurfaceLike | None = None, contact_modulus: Scalar | None = None, *, load: Any = None, pressure: Any = None, approach: Any = None,
+    gap: SurfaceLike | None = None, size: Size = None, hardness: float | ArrayLike | None = None,
     boundary: Boundary = "free", kernel: Kernel | None = None, start: ElasticContact | ArrayLike | None = None,
     out: Floats | Mapping[str, Floats] | None = None, history: bool = False, method: Method = "projected-cg",
     tolerance: float = 1e-6, max_iterations: int = 5000

@@ -18,6 +18,7 @@ from . import _words
 from ._arrays import choice, count, meant, number
 from ._core import CaseError
 from ._parameters import call
+from ._units import bare
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -35,6 +36,7 @@ def _truth(name: str, value: Any) -> bool:
 
 def _of_bodies(name: str, value: Any) -> float | tuple[float, ...]:
     """A number for both bodies, or one for each."""
+    value = bare(name, value)
     if np.ndim(value) == 0:
         return number(name, value)
     if np.shape(value) != (2,):

@@ -92,7 +92,7 @@ class Fit(ReadOnlyArrays):
     def material(self) -> Material:
         """The material with the Poisson's ratio (or bulk modulus, hardness, name) that was given to the fit."""
         if self._body.get("poisson") is None and self._body.get("bulk_modulus") is None:
-            raise CaseError("a body needs poisson or bulk_modulus: give one to the fit, or use with_body(poisson=...)")
+            raise CaseError("the fit knows no Poisson's ratio: give poisson or bulk_modulus to the fit, or take fit.with_body(poisson=...) as the material")
         return self.with_body(**self._body)
 
     def with_body(
@@ -332,8 +332,8 @@ def fit_creep(given: OfCurve) -> Fit:
 
 @arguments_of(OfDma)
 def fit_dma(given: OfDma) -> Fit:
-    """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum; frequencies with a unit
-    are converted.
+    """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] with ``angular=True``, by one spectrum; frequencies with a
+    unit are converted. :meth:`Material.storage_loss`, `storage` and `loss` take [rad/s], as `Fit.x` has them.
 
     `window` is in rad/s; `moduli` is "both", "storage" or "loss", the ones that are fitted (measured ones often contradict
     each other: then the storage modulus is usual, and :attr:`Fit.misfits` says how far off the other is); `loss_weight` is the
@@ -345,6 +345,15 @@ def fit_dma(given: OfDma) -> Fit:
     >>> fit = asp.fit_dma(f, *rubber.storage_loss(2 * np.pi * f), poisson=0.5)
     >>> len(fit.terms), fit.max_misfit < 1e-3
     (2, True)
+
+    There and back: what was given at f [Hz] is that of the material at 2 pi f [rad/s].
+
+    >>> storage, loss = rubber.storage_loss(2 * np.pi * f)
+    >>> bool(np.allclose(fit.material.storage(2 * np.pi * f), storage, rtol=1e-3))
+    True
+    >>> same = asp.fit_dma(2 * np.pi * f, storage, loss, angular=True, poisson=0.5)
+    >>> bool(np.allclose(same.material.loss(2 * np.pi * f), loss, rtol=1e-3))
+    True
     """
     at = angular_frequency("frequency", given.frequency, angular=True)
     # Converted where it carries a unit; a plain number is what `angular` says.

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ._arrays import AnyArray, ArrayLike, Floats, choice, count, either, in_hertz, line, number, points
+from ._arrays import AnyArray, ArrayLike, Floats, Scalar, choice, count, either, in_hertz, line, number, points
 from ._core import CaseError, waitable
 from ._declared import Table
 from ._parameters import call, parameters
@@ -137,27 +137,27 @@ def _history(kind: str, values: dict[str, Any], **times: Any) -> History:
     return History(kind, (*numbers, *(number(name, time) for name, time in times.items())), unit=unit)
 
 
-def step(value: float) -> History:
+def step(value: Scalar) -> History:
     """The value from t = 0+ on."""
     return _history("step", {"value of the step": value})
 
 
-def ramp(value: float, *, duration: float) -> History:
+def ramp(value: Scalar, *, duration: Scalar) -> History:
     """Linear from 0 to `value` during `duration` [s], then held."""
     return _history("ramp", {"value of the ramp": value}, duration=duration)
 
 
-def triangle(peak: float, *, rise: float, fall: float) -> History:
+def triangle(peak: Scalar, *, rise: Scalar, fall: Scalar) -> History:
     """Linear from 0 to `peak` during `rise` [s] and back to 0 during `fall` [s], then 0."""
     return _history("triangle", {"peak": peak}, rise=rise, fall=fall)
 
 
-def trapezoid(peak: float, *, rise: float, hold: float, fall: float) -> History:
+def trapezoid(peak: Scalar, *, rise: Scalar, hold: Scalar, fall: Scalar) -> History:
     """As :func:`triangle`, with `hold` [s] at the peak."""
     return _history("trapezoid", {"peak": peak}, rise=rise, hold=hold, fall=fall)
 
 
-def sine(*, mean: float, amplitude: float, frequency: float) -> History:
+def sine(*, mean: Scalar, amplitude: Scalar, frequency: Scalar) -> History:
     """mean + amplitude sin(2 pi frequency t), the frequency in Hz (a quantity may be in rad/s or rpm)."""
     return _history("sine", {"mean": mean, "amplitude": amplitude}, frequency=in_hertz("frequency", frequency))
 
@@ -226,7 +226,7 @@ def hold() -> History:
     return History("hold", ())
 
 
-def ramp_to(value: float, *, duration: float) -> History:
+def ramp_to(value: Scalar, *, duration: Scalar) -> History:
     """Linear from the value that the quantity has when the stage starts to `value` during `duration` [s], then held; for a
     :class:`Stage`."""
     return _history("ramp-to", {"value of the ramp": value}, duration=duration)
@@ -238,7 +238,7 @@ def _event_units(load_unit: str) -> dict[str, str]:
     return {"approach": "m", "load": load_unit, "pressure": "Pa", **numbers}
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Stage(Table):
     """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
 
@@ -269,9 +269,9 @@ class Stage(Table):
     (True, 0.0)
     """
 
-    load: History | float | None = None
-    pressure: History | float | None = None
-    approach: History | float | None = None
+    load: History | Scalar | None = None
+    pressure: History | Scalar | None = None
+    approach: History | Scalar | None = None
     duration: float | None = None
     until: Literal["contact-lost"] | tuple[str, Any] | dict[str, Any] | None = None
     after_jump: bool = False
@@ -317,17 +317,17 @@ def one_of(alternatives: dict[str, Any], otherwise: str) -> tuple[str, Any]:
     return given[0]
 
 
-def uniform(end: float, steps: int) -> Times:
+def uniform(end: Scalar, steps: int) -> Times:
     """`steps` equal steps to `end` [s]."""
     return Times("uniform", (number("end", end), count("number of steps", steps)))
 
 
-def log(end: float, steps: int, *, first: float) -> Times:
+def log(end: Scalar, steps: int, *, first: Scalar) -> Times:
     """`steps` times in geometric progression from `first` to `end` [s]."""
     return Times("log", (number("end", end), count("number of steps", steps), number("first instant", first)))
 
 
-def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None) -> Times:
+def adaptive(end: Scalar, *, tolerance: Scalar = 1e-3, first: Scalar | None = None) -> Times:
     """Steps to `end` [s] as long as their error allows.
 
     `tolerance` is the relative error of the stress that the steps aim at, and that the `time_error` of each row stays within. The first

@@ -12,6 +12,7 @@ from . import _core
 from ._arrays import ArrayLike, Floats, check_length, each, number
 from ._core import CaseError
 from ._declared import Table
+from ._fit import Fit
 from ._materials import Material
 from ._words import Interface
 
@@ -31,6 +32,9 @@ class Layer(Table):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        if isinstance(self.material, Fit):
+            made = self.material.material if self.poisson is None else self.material.with_body(poisson=self.poisson)
+            object.__setattr__(self, "material", made)
         if not isinstance(self.material, Material):
             raise CaseError(f"material of a layer is {self.material!r}, but must be a material, such as asperity.Elastic(...)")
         check_length("thickness of a layer", self.thickness)
@@ -69,6 +73,8 @@ class Body(Table):
         object.__setattr__(self, "layers", tuple(self.layers))
         if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
             raise CaseError("layers is a list of asperity.Layer, one at least, from the surface down")
+        if isinstance(self.base, Fit):
+            object.__setattr__(self, "base", self.base.material)
         if not isinstance(self.base, Material) and self.base != "rigid":
             raise CaseError(f"base is {self.base!r}, but must be 'rigid', or the material of the half-space below")
 

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, choice, field, in_order, number, numbers_of, pair
+from ._arrays import ArrayLike, Floats, Scalar, Size, centres, choice, field, in_order, number, numbers_of, pair
 from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn
 from ._sealed import Sealed
-from ._surface import _parts
+from ._states import HasState, refuse_beside, said
+from ._surface import Labelled, SurfaceLike, _parts
 from ._words import Flow, Sides
 
 if TYPE_CHECKING:
@@ -94,6 +95,23 @@ class Leakage(Sealed):
         fluid = {name: value for name, value in locals().items() if name not in ("self", "standard")}
         return float(self._solved(numbers_of(fluid))["leak_rate_standard" if standard else "leak_rate"])
 
+    def to_xarray(self) -> xarray.Dataset:
+        """The numbers of the leak and its fields, `fluid_pressure` (1 at the inlet to 0 at the outlet) and `leak_cells`, as xarray.Dataset.
+
+        >>> import asperity as asp, numpy as np
+        >>> data = asp.leakage(np.full((8, 4), 1e-6), size=(1e-3, 5e-4), sides="periodic").to_xarray()
+        >>> data.hydraulic_gap.attrs["units"], data.fluid_pressure.dims
+        ('m', ('x', 'y'))
+        """
+        numbers = {name: getattr(self, name) for name in LEAKS if name in Leakage.__annotations__}
+        data = {name: LEAKS[name].variable((), bool(value) if name in _FLAGS else value) for name, value in numbers.items()}
+        data["fluid_pressure"] = variable(("x", "y"), self.pressure, "1", "pressure of the fluid over the pressure drop")
+        data["leak_cells"] = variable(("x", "y"), self.cells, "1", "0 closed, 1 through, 2 from the inlet, 3 from the outlet, 4 pocket")
+        if self.conductance is not None:
+            data["conductance"] = variable(("flow_direction", "gradient_direction"), self.conductance, "m^3", "effective conductance")
+        places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip("xy", self._gap.shape, self._size)}
+        return dataset(data, places)
+
     def __repr__(self) -> str:
         nx, ny = self._gap.shape
         if not self.percolates:
@@ -102,19 +120,20 @@ class Leakage(Sealed):
 
 
 def leakage(
-    gap: Any, contact: Any = None, *, size: Sequence[float] | None = None, direction: Flow = "x", sides: Sides = "periodic",
-    smallest_gap: float = 0.0
+    gap: SurfaceLike | HasState, contact: ArrayLike | Labelled | None = None, *, size: Size = None, direction: Flow = "x", sides: Sides | None = None,
+    smallest_gap: Scalar = 0.0
 ) -> Leakage:
     """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
 
     Parameters
     ----------
-    gap : gap between the surfaces [m], array (nx, ny)
+    gap : an :class:`ElasticContact`, a :class:`Result` (its last fields) or a :class:`Step`, with its touching cells, size and boundary, or
+        the gap between the surfaces [m], array (nx, ny)
     contact : where the surfaces touch (nonzero); default: where the gap is not above its error, the deepest negative gap (a note
         `gaps-below-error` in `findings` counts the cells that this closes)
     size : lengths of the domain along x and y [m]; a gap as xarray array with coordinates needs none
     direction : "x" or "y"; "both": along x, and the effective conductance of a gap that repeats in both directions
-    sides : "periodic" or "closed"
+    sides : "periodic" or "closed"; default: those of the contact, and of a bare array "periodic", with a warning
     smallest_gap : cells with a smaller gap are closed [m]
 
     Raises
@@ -128,7 +147,7 @@ def leakage(
     >>> import asperity as asp, numpy as np
     >>> x = (np.arange(128) + 0.5) / 128
     >>> gap = np.tile(1e-6 * (1 + 0.5 * np.cos(2 * np.pi * x))[:, None], (1, 4))
-    >>> leak = asp.leakage(gap, size=(1e-3, 1e-4))
+    >>> leak = asp.leakage(gap, size=(1e-3, 1e-4), sides="periodic")
     >>> bool(abs(leak.hydraulic_gap**3 / 1e-18 - 0.4330127018922193) < 1e-9)
     True
     >>> f"{leak.leak_rate(pressure_drop=2e5, viscosity=1e-3):.3e} m3/s"
@@ -136,6 +155,20 @@ def leakage(
     >>> f"{10 * leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas='air', standard=True):.2e} mbar l/s"
     '4.20e-05 mbar l/s'
     """
+    keys = {"direction": choice("direction", direction, Flow), "smallest_gap": number("smallest_gap", smallest_gap)}
+    if isinstance(gap, HasState):
+        refuse_beside("leakage", gap, {"contact": contact, "size": size})
+        state = gap._state()
+        if state.gap is None:
+            raise _core.CaseError("leakage needs the field 'gap', which the result does not keep: fields=['pressure', 'gap']")
+        if len(state.size) == 1:
+            raise _core.CaseError("leakage needs a contact over a plane: through a line contact nothing flows")
+        usual: Sides = "periodic" if state.boundary == "periodic" else "closed"
+        keys["sides"] = choice("sides", usual if sides is None else sides, Sides)
+        if direction == "both" and state.boundary != "periodic":
+            raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
+        return Leakage(state.gap, state.touches, pair("size", state.size), keys)
+    keys["sides"] = choice("sides", said("leakage", "sides", sides, "periodic", '"periodic" or "closed"'), Sides)
     values, extent, _ = _parts(gap, size, "gap")
     h = field("gap", values)
     extent = pair("size", extent)
@@ -143,8 +176,7 @@ def leakage(
     touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
-    keys = {"direction": choice("direction", direction, Flow), "sides": choice("sides", sides, Sides)}
-    return Leakage(h, touches, extent, {**keys, "smallest_gap": number("smallest_gap", smallest_gap)})
+    return Leakage(h, touches, extent, keys)
 
 
 def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:

@@ -29,6 +29,7 @@ from ._core import CaseError
 from ._declared import check
 from ._parameters import call
 from ._sealed import Sealed
+from ._spoken import spoken
 from ._shifts import Shift
 from ._units import frequency
 from ._words import Measure
@@ -67,7 +68,8 @@ class Material(Sealed):
             self._hold(window=_window(self.window))
         own = {key: value for key, value in self._given.items() if key in _OF_BODY}
         keys = {**own, "name": str(own.get("name", type(self).__name__)), "material": self._material()}
-        self._hold(_keys=keys, _body=_core.Body(keys))
+        with spoken():
+            self._hold(_keys=keys, _body=_core.Body(keys))
 
     @property
     def _given(self) -> dict[str, Any]:
@@ -152,7 +154,8 @@ class Material(Sealed):
         return each(lambda times: self._body.relaxation(times, self._of(measure)), "times", t)
 
     def storage_loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> tuple[Floats, Floats]:
-        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm) of the modulus `measure`,
+        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz (quantities may be in either, or in
+        rpm), of the modulus `measure`,
         as :meth:`relaxation_modulus`.
 
         >>> import asperity as asp
@@ -169,11 +172,11 @@ class Material(Sealed):
     creep, relaxation = creep_compliance, relaxation_modulus
 
     def storage(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """The storage modulus [Pa], as :meth:`storage_loss`."""
+        """The storage modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz, as :meth:`storage_loss`."""
         return self.storage_loss(omega, measure=measure)[0]
 
     def loss(self, omega: ArrayLike, *, measure: Measure | None = None) -> Floats:
-        """The loss modulus [Pa], as :meth:`storage_loss`.
+        """The loss modulus [Pa] at angular frequencies `omega` [rad/s], 2 pi times those in Hz, as :meth:`storage_loss`.
 
         >>> import asperity as asp
         >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5)

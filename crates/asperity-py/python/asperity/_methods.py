@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _given
 from ._arrays import cells_of
 from ._cite import entries
 from ._prefixes import quantity
@@ -29,9 +30,11 @@ _CONTROLS = {"load": "load", "pressure": "mean pressure", "approach": "approach"
 _CITED = {"Spinu": "spinu2017", "Polonsky": "polonsky1999", "Yastrebov": "yastrebov2017"}
 
 
-def paragraph(result: Result, bibtex: bool) -> str:
-    """What was run, in sentences, and with `bibtex` the entries of what they cite."""
+def paragraph(result: Result, bibtex: bool, case: bool) -> str:
+    """What was run, in sentences, with `case` the case that runs it again, and with `bibtex` the entries of what the sentences cite."""
     text = " ".join(sentence for sentence in _sentences(result) if sentence)
+    if case and (whole := _given.text_of(result)):
+        text += f"\n\nThe case in full, numbers without a unit in SI units:\n\n{whole}"
     return f"{text}\n\n{entries(['asperity', *(key for words, key in _CITED.items() if words in text)])}" if bibtex else text
 
 
@@ -48,15 +51,21 @@ def _sentences(result: Result) -> Iterator[str]:
         f"asperity {known.get('version', '')}{', by the model of Spinu and Cerlinca (2017)' if relaxes and not layered else ''}, on "
         f"{cells_of(result.initial_gap)} of a {domain} of {' x '.join(quantity(length, 'm') for length in result.size)}."
     )
+    given = _given.given(result) or {}
+    yield _given.surfaces(given)
+    if steps := _given.steps(setup):
+        yield f"The heights went through: {'; '.join(steps)}."
     yield _of_materials(setup)
+    yield _given.materials(given) if setup.get("materials") else ""
     yield _of_hardness(setup)
     for name, sentence in (("adhesion", _of_adhesion), ("friction", _of_friction), ("wear", _of_wear)):
         if setup.get(name):
             yield sentence(setup[name])
     if setup.get("stage_controls"):
-        yield _of_load(result, setup)
+        yield _of_load(result, setup, given)
     if setup.get("motion"):
         yield _of_motion(result, setup["motion"])
+    yield _given.motion(given)
     if len(result):
         # Results of an earlier release do not say how their steps were chosen.
         if not result.is_sweep and "end" in setup:
@@ -133,9 +142,9 @@ def _of_wear(wear: dict[str, Any]) -> str:
     return f"The surfaces wear by Archard's law in each cell, with the coefficient {body:g} m²/N{both}{limit}, implicitly in each step.{cycles}"
 
 
-def _of_load(result: Result, setup: dict[str, Any]) -> str:
+def _of_load(result: Result, setup: dict[str, Any], given: dict[str, Any]) -> str:
     controls = [_CONTROLS.get(control, control) for control in setup["stage_controls"]]
-    text = f"The {controls[0]} was prescribed." if len(controls) == 1 else f"{len(controls)} stages prescribed in turn {', '.join(controls)}."
+    text = f"The {controls[0]} was prescribed{_given.load(given, result.units('load'))}." if len(controls) == 1 else f"{len(controls)} stages prescribed in turn {', '.join(controls)}."
     for name, told in (setup.get("sampled") or {}).items():
         unit = result.units(name) if name == "load" else UNITS[name]
         text += f" The {name} is a function of time, taken at {told['points']:.0f} points, within {quantity(told['error'], unit)} of it."

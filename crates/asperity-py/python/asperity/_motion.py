@@ -15,6 +15,7 @@ from ._histories import Function, History, one_of
 from ._problem import InTime, Run, table_keys
 from ._result import Result
 from ._solve import solved
+from ._units import has_unit
 from ._words import Movement
 
 
@@ -22,7 +23,9 @@ def _shear(given: Any) -> Any:
     """The key `shear_stress`."""
     if isinstance(given, dict):
         return {name: number(f"shear_stress {name}", value) for name, value in given.items()}
-    if np.ndim(given) == 2:
+    # Pairs may hold quantities, of which numpy makes no array.
+    listed = isinstance(given, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in given)
+    if listed or (not has_unit(given) and np.ndim(given) == 2):
         return {"points": [[number("velocity", v), number("shear_stress", stress)] for v, stress in given]}
     return number("shear_stress", given)
 

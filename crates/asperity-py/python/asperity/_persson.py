@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import ArrayLike, Floats, array, choice, direction_of, line, number
+from ._arrays import ArrayLike, Floats, Scalar, array, choice, direction_of, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._sealed import ReadOnlyArrays, Sealed
-from ._surface import as_surface
+from ._surface import SurfaceLike, as_surface
 from ._words import Correction
 
 
@@ -60,7 +60,7 @@ class PerssonFriction(Sealed):
 
 
 def persson_friction(
-    surface: Any, material: Material, *, pressure: float, velocities: ArrayLike, correction: Correction = "yang-persson",
+    surface: SurfaceLike, material: Material, *, pressure: Scalar, velocities: ArrayLike, correction: Correction = "yang-persson",
     direction: str | float = "x", temperature: float | None = None, size: Sequence[float] | None = None
 ) -> PerssonFriction:
     """Friction and contact area of a rigid rough surface that slides over a viscoelastic body, by Persson's theory.

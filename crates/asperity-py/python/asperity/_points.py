@@ -11,13 +11,10 @@ import functools
 import hashlib
 import json
 import os
-import pickle
 import re
 import tempfile
-import types
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -25,11 +22,11 @@ import numpy as np
 
 from . import _core
 from ._core import CaseError
+from ._digest import Walk, digest
 from ._findings import ResultWarning
 from ._materials import Material
 from ._result import Result, open as open_result
 from ._solve import overrides
-from ._surface import Surface
 
 #: Answer to a point: a result, or why there is none.
 Solved = tuple[str, str, Result | None]
@@ -66,58 +63,28 @@ def base_of_case(case: str, directory: str) -> str:
     return digest(case, _files(directory, case))
 
 
-def base_of_function(function: Any, fixed: dict[str, Any]) -> str:
-    """Digest of a function and its arguments; those of this package count by their names."""
-    return digest(function.__name__ if hasattr(function, "options") else function, fixed)
+def base_of_function(function: Any, fixed: dict[str, Any]) -> tuple[str, Walk]:
+    """Digest of a function and its arguments, and the walk through what they reach."""
+    walk = Walk()
+    return digest(repr([walk.parts(function), walk.parts(fixed)])), walk
+
+
+def unseen(walk: Walk, point: Point) -> list[str]:
+    """What may have changed, of what a function reaches, since the result of a point was stored."""
+    assert point.folder is not None
+    stored = os.path.getmtime(os.path.join(point.folder, f"{point.name}.zarr"))
+    return [*walk.unknown, *(f"the file {file}" for file in sorted(walk.files) if os.path.exists(file) and os.path.getmtime(file) > stored)]
 
 
 def _files(directory: str, text: str) -> dict[str, bytes]:
     """The files that a text names between quotes, digested: a file that has changed makes another point."""
     held = {}
-    for word in set(re.findall(r"[\"']([^\"'\n]{1,4096})[\"']", text)) if directory else ():
+    for word in sorted(set(re.findall(r"[\"']([^\"'\n]{1,4096})[\"']", text))):
         path = os.path.join(directory, word)
         if os.path.isfile(path):
             with open(path, "rb") as file:
                 held[word] = hashlib.sha256(file.read()).digest()
     return held
-
-
-def digest(*values: Any) -> str:
-    """The same for the same values, in this process and in the next."""
-    return hashlib.sha256(repr([_parts(value) for value in values]).encode()).hexdigest()
-
-
-def _parts(value: Any) -> Any:
-    """What tells a value from others, in text, numbers and bytes."""
-    name = type(value).__qualname__
-    if value is None or isinstance(value, (bool, int, float, complex, str, bytes)):
-        return name, value
-    if isinstance(value, np.generic):
-        return _parts(value.item())
-    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
-        return "array", value.dtype.str, value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).digest()
-    if isinstance(value, (list, tuple)):
-        return name, [_parts(item) for item in value]
-    if isinstance(value, Mapping):
-        return "mapping", [(_parts(key), _parts(value[key])) for key in sorted(value, key=repr)]
-    if isinstance(value, Material):
-        return name, _parts(value._given)
-    if isinstance(value, Surface):
-        return name, _parts([value.heights, value.size])
-    if is_dataclass(value) and not isinstance(value, type):
-        return name, _parts({one.name: getattr(value, one.name) for one in fields(value)})
-    if isinstance(value, functools.partial):
-        return name, _parts([value.func, value.args, value.keywords])
-    if isinstance(value, types.FunctionType):
-        # A function that was changed is another one.
-        held = [cell.cell_contents for cell in value.__closure__ or ()]
-        return value.__module__, value.__qualname__, _parts([value.__code__, value.__defaults__, value.__kwdefaults__, held])
-    if isinstance(value, types.CodeType):
-        return name, value.co_code, _parts([value.co_names, value.co_varnames, value.co_consts])
-    try:
-        return name, pickle.dumps(value, protocol=4)
-    except Exception as error:
-        raise CaseError(f"a point of the study holds {value!r}, which cannot be sent to another process: {error}") from None
 
 
 def solve_point(point: Point) -> Solved:

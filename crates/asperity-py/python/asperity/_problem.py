@@ -10,15 +10,16 @@ import numpy as np
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import AnyPath, ArrayLike, Floats, as_plane, check_places, distinct, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, number
 from ._core import CaseError
 from ._declared import Table, check
+from ._fit import Fit
 from ._histories import Function, History, Stage, Times, as_history, as_times, one_of
 from ._layers import Body
 from ._materials import Material
 from ._rows import Field, Quantity
 from ._shifts import temperature_keys
-from ._surface import Surface, check_boundary, per_cell, surface_of
+from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._tangential import Friction, Tangential
 from ._units import bare
 from ._wear import Wear
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
 class Problem:
     """What each kind of run takes; :func:`asperity.solve` describes the fields."""
 
-    surface: Any = None
-    material: Material | Body | Sequence[Material | Body] | None = None
+    surface: SurfaceLike | None = None
+    material: Material | Fit | Body | Sequence[Material | Fit | Body] | None = None
     _: KW_ONLY
-    load: History | Function | float | None = None
-    pressure: History | Function | float | None = None
-    gap: Any = None
-    size: float | Sequence[float] | None = None
+    load: History | Function | Scalar | None = None
+    pressure: History | Function | Scalar | None = None
+    gap: SurfaceLike | None = None
+    size: Size = None
     hardness: float | ArrayLike | None = None
     temperature: float | Sequence[tuple[float, float]] | None = None
     boundary: Boundary = "free"
@@ -94,6 +95,12 @@ class Problem:
         if self.temperature is not None:
             keys["temperature"] = temperature_keys(self.temperature)
         return shape, keys, arrays
+
+    def given(self, shape: Surface, keys: dict[str, Any]) -> dict[str, Any]:
+        """The keys of the case as they were given, without arrays: surfaces by what they were made or read from."""
+        bodies = [{key: value for key, value in body.items() if key != "hardness_array"} for body in keys["body"]]
+        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies})
+        return found
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
         """The keys of `[load]`; the unit of a load is N, or N/m of a line contact."""
@@ -151,7 +158,7 @@ class InTime(Problem):
 class InStages(InTime):
     """A run in time at rest, whose control may switch: the arguments of :func:`asperity.march`."""
 
-    approach: History | Function | float | None = None
+    approach: History | Function | Scalar | None = None
     stages: Sequence[Stage] | None = None
     adhesion: Adhesion | None = None
     fluid: Fluid | None = None
@@ -212,6 +219,15 @@ class Solve(Run, InStages):
             self.fields = ("pressure", "contact_pressure") if attracted else ("pressure", *along)
 
 
+def in_json(value: Any) -> Any:
+    """Keys without infinite numbers, which JSON does not have: as text, as a case file takes them too."""
+    if isinstance(value, dict):
+        return {key: in_json(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [in_json(one) for one in value]
+    return str(value) if isinstance(value, float) and not np.isfinite(value) else value
+
+
 def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> dict[str, Any]:
     """The table of the case that an argument is, where it is given."""
     if (value := getattr(given, name)) is not None and not isinstance(value, kind):
@@ -221,7 +237,8 @@ def table_keys(given: Problem, name: str, kind: type[Table], section: str) -> di
 
 def bodies_of(material: Any) -> list[Material | Body]:
     """The deformable bodies, one or two."""
-    bodies = list(material) if isinstance(material, (list, tuple)) else [material]
+    given = list(material) if isinstance(material, (list, tuple)) else [material]
+    bodies = [one.material if isinstance(one, Fit) else one for one in given]
     if 1 <= len(bodies) <= 2 and all(isinstance(body, (Material, Body)) for body in bodies):
         return bodies
     shown = repr(material) if len(repr(material)) < 60 else type(material).__name__

@@ -7,12 +7,14 @@ script without a guard. A process that dies takes its own point with it and no o
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import pickle
 import queue
 import subprocess
 import sys
 import threading
+import types
 from collections.abc import Generator, Sequence
 from typing import Any
 
@@ -97,20 +99,29 @@ class _Process:
         return f"its process ended with exit code {code}"
 
 
+class _Pickler(pickle.Pickler):
+    """Refuses what another process could not find: the functions and classes of the script or notebook."""
+
+    def reducer_override(self, held: Any) -> Any:
+        if isinstance(held, (types.FunctionType, type)) and held.__module__ == "__main__":
+            raise CaseError(f"{held.__qualname__!r} of this script or notebook cannot be sent to another process: install cloudpickle, or put it into a module")
+        return NotImplemented
+
+
 def pickled(point: Point) -> bytes:
-    """A point for another process; functions of a notebook or script need cloudpickle."""
-    function = point.function
-    if function is not None and getattr(function, "__module__", "") == "__main__":
-        try:
-            import cloudpickle  # type: ignore[import-not-found,import-untyped,unused-ignore]
-        except ImportError:
-            raise CaseError(
-                f"the function {getattr(function, '__name__', function)!r} of this script or notebook cannot be sent to another "
-                "process: install cloudpickle, or put the function into a module"
-            ) from None
-        return bytes(cloudpickle.dumps(point))
+    """A point for another process; functions of a notebook or script need cloudpickle, wherever the point holds them."""
     try:
-        return pickle.dumps(point, protocol=pickle.HIGHEST_PROTOCOL)
+        import cloudpickle  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    except ImportError:
+        cloudpickle = None
+    try:
+        if cloudpickle is not None:
+            return bytes(cloudpickle.dumps(point))
+        into = io.BytesIO()
+        _Pickler(into, protocol=pickle.HIGHEST_PROTOCOL).dump(point)
+        return into.getvalue()
+    except CaseError:
+        raise
     except Exception as error:
         raise CaseError(f"a point of the study cannot be sent to another process: {error}") from None
 

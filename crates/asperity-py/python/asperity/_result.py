@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, number, numbers_of, plain
+from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, meant, number, numbers_of, plain
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -24,12 +24,16 @@ from ._leakage import over_time, stored
 from ._methods import paragraph
 from ._rows import Columns, Field, StressColumns
 from ._sealed import Sealed, read_only
+from ._states import State
 from ._stress import Stress, changing, stress
 from ._units import written
-from ._words import Flow, Sides
+from ._words import Flow, Nearest, Sides
 from .plot import Plots
 
 if TYPE_CHECKING:
+    import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+    import xarray
+
     from ._converge import ErrorBar
 
 class Axis(NamedTuple):
@@ -62,6 +66,13 @@ class Cycle(NamedTuple):
     loss_angle: float
     #: What of the work the mean load does over the drift of the approach from start to end [J]: 0 where the cycle closes.
     drift_work: float
+
+
+class NotStored(CaseError, KeyError):
+    """Nothing was stored at this time."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
 
 class Result(OnGrid, Columns, StressColumns, Sealed):
@@ -132,7 +143,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             "field_velocities": "because it is a run in time: its fields have field_times",
             "y": "because a line contact has no y: nothing changes along it",
         }
-        known = f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
+        near = "" if name.startswith("_") else meant(name, [one for one in dir(self) if one[0] != "_"], 0.75)
+        known = near or f"; it has {', '.join(ROW)}, field(name, time=...) and plot"
         raise AttributeError(f"the result has no {name!r}{f', {reasons[name]}' if name in reasons else known}")
 
     if not TYPE_CHECKING:  # where it would hide misspelt names
@@ -229,9 +241,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(COLUMNS)}")
         return COLUMNS[name].attributes(self.is_line)["units"]
 
-    def field(self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Floats:
-        """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
-        last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
+    def field(
+        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None
+    ) -> Floats:
+        """A field of shape (nx, ny), of a line contact (n,), at the stored `time` [s], of a sweep the stored `velocity` [m/s], or with that
+        index; default the last. Fields of a contact that moves are in its frame.
+
+        A time at which nothing was stored is a KeyError that names its neighbours in `field_times`; with ``method="nearest"`` the field
+        at the nearest stored time.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness, 3 slipping).
         Read-only for a result in memory, a new array for one on disk.
@@ -239,14 +256,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         if name not in self._fields:
             choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        values: Floats = self._fields[name][self._index(time, velocity, index)]
+        values: Floats = self._fields[name][self._index(time, velocity, index, method)]
         return values
 
     def stress(
-        self, *, time: float | None = None, index: int | None = None, depths: str | Sequence[float] = "auto",
+        self, *, time: float | None = None, index: int | None = None, method: Nearest | None = None, depths: str | Sequence[float] = "auto",
         poisson: float | None = None, body: int = 0
     ) -> Stress:
-        """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
+        """The stress below the surface at the stored `time` [s], or with that index, or at the nearest time, as :meth:`field`; default the last.
 
         It follows from the stored pressure, under a tangential load also from the stored tractions, with the Poisson's ratio of the body of that number, or `poisson`; see
         :func:`asperity.stress`. Where that ratio changes with time (constant bulk modulus), the pressures of all rows must be kept. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
@@ -271,7 +288,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
             if poisson is None and creep is not None and "stage_controls" in setup:
-                last = self._index(time=time, index=index) + 1
+                last = self._index(time=time, index=index, method=method) + 1
                 rows = self._table["time"][:last]
                 if "motion" in setup:
                     raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
@@ -284,21 +301,25 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
                 return changing(setup, body, (self._table["stage"][:last].astype(int).tolist(), rows.tolist()), pressures, self.size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
-        pressure, tractions = self.field("pressure", time=time, index=index), None
+        at: dict[str, Any] = {"time": time, "index": index, "method": method}
+        pressure, tractions = self.field("pressure", **at), None
         if "friction" in setup:
             # What acts on the first body acts the other way on the second.
-            tractions = [(-1.0 if body else 1.0) * self.field(name, time=time, index=index) for name in ("traction_x", "traction_y")]
+            tractions = [(-1.0 if body else 1.0) * self.field(name, **at) for name in ("traction_x", "traction_y")]
         return stress(pressure, size=self.size, poisson=poisson, depths=depths, boundary=setup.get("boundary", "free"), tractions=tractions)
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.Dataset:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
-        leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
+        leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray. The load is ``data["load"]`` and `data.normal_load`:
+        `data.load` is a method of xarray. What else was computed is merged, as in ``data.merge(result.stress().to_xarray())``."""
         along, at, line, table = self._axis.name, f"field_{self._axis.name}", self.is_line, self._table
         data: dict[str, Any] = {
             name: entry.variable((along, "axis")[: table[name].ndim], table[name], line)
             for name, entry in COLUMNS.items()
             if name != "time" and name in table
         }
+        # Under this name too: `load` of a dataset is a method of xarray.
+        data["normal_load"] = COLUMNS["load"].variable(along, table["load"], line)
         data |= {name: FIELDS[name].variable((at, *self._axes), self._stack(name)) for name in self._fields}
         stress = {name: STRESS[name].variable((at, "depth")[: values.ndim], values, line) for name, values in self._stress.items() if name != "depth"}
         for name in self._stress_fields:
@@ -327,7 +348,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         gas: str | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
         outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
         field: bool | None = None
-    ) -> Any:
+    ) -> xarray.Dataset:
         """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
 
         Without arguments the leaks that the run stored. Otherwise those of a liquid (`pressure_drop` [Pa], `viscosity` [Pa s]), of a
@@ -337,28 +358,35 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         given = numbers_of({name: value for name, value in locals().items() if name != "self"})
         return over_time(self, given) if given or not self._leaks else stored(self)
 
-    def methods(self, *, bibtex: bool = False) -> str:
-        """A paragraph on what was run, for the methods section of a paper: model, materials, load, steps, solver, errors and warnings;
-        with `bibtex` the entries of what it cites follow.
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
+        """A paragraph on what was run, for the methods section of a paper: model, surface, materials, load, steps, solver, errors and
+        warnings; with `case` the text of a case file that runs it again follows, where arrays were given with remarks on them; with
+        `bibtex` the entries of what the paragraph cites.
 
         >>> import asperity as asp
         >>> ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=20e-3)
         >>> rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
         >>> result = asp.solve(ball, rubber, load=1e-3, times=asp.uniform(5.0, 20), fields=[])
-        >>> print(result.methods().split(". ")[2])
-        The contact modulus is 4 MPa at once and 2 MPa after relaxation
+        >>> print(result.methods().split(". ")[1])
+        The surface is a sphere (radius 20 mm)
+        >>> again = result.methods().split("SI units:")[1]
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     same = asp.run(again, output=folder + "/again.zarr")
+        >>> bool((same.approach == result.approach).all())
+        True
         """
-        return paragraph(self, bibtex)
+        return paragraph(self, bibtex, case)
 
     @property
     def plot(self) -> Plots:
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
         return Plots(self)
 
-    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> Labels:
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None) -> Labels:
         """The contact spots as a labelled image of shape (nx, ny): the number of the spot of each cell, 1 for the largest, 0 where
-        nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At the stored time
-        nearest to `time`, as :meth:`field`.
+        nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At a stored
+        time, as :meth:`field`.
 
         >>> import asperity as asp
         >>> wave = asp.Surface.wave(cells=(32, 32), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(5e-4, 5e-4))
@@ -366,8 +394,14 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> int(result.spots().max())
         8
         """
-        touches = self._touches(time=time, velocity=velocity, index=index).astype(np.float64)
+        touches = self._touches(time=time, velocity=velocity, index=index, method=method).astype(np.float64)
         return _core.spot_labels(plain(as_plane(touches)), self._setup.get("boundary", "free")).reshape(touches.shape)
+
+    def _state(self) -> State:
+        """The last fields that were kept."""
+        setup, gap = self._setup, self.field("gap") if "gap" in self._fields else None
+        pressure = self.field("pressure") if "pressure" in self._fields else np.zeros(self.cells)
+        return State(self.size, setup.get("boundary", "free"), gap, pressure, self._touches(), setup.get("poisson") or ())
 
     def _touches(self, **at: Any) -> AnyArray:
         """Where the surfaces touch at a stored instant: from the field that tells it."""
@@ -382,13 +416,19 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
         return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
 
-    def to_dataframe(self) -> Any:
-        """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
-        ``frame.attrs["units"]``."""
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number, of a vector two,
+        as `tangential_force_x`; units are in ``frame.attrs["units"]``."""
         along = self._axis.name
-        columns = {name: np.array(self._table[name]) for name in COLUMNS if name != "time" and name in self._table}
+        columns: dict[str, AnyArray] = {}
+        units = {along: self.units("time")}
+        for name in (name for name in COLUMNS if name != "time" and name in self._table):
+            values = self._table[name]
+            parts = {f"{name}_{axis}": values[:, n] for n, axis in enumerate("xy")} if name in VECTORS else {name: values}
+            columns |= {part: np.array(column) for part, column in parts.items()}
+            units |= dict.fromkeys(parts, self.units(name))
         rows = frame({along: np.array(self._table["time"]), **columns}).set_index(along)
-        rows.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
+        rows.attrs["units"] = units
         return rows
 
     def save(self, path: AnyPath, *, force: bool = False) -> None:
@@ -460,8 +500,12 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             rows += [(self._axis.name, f"{last.pop('time'):.6g} {self._axis.unit}"), *told(last, self.is_line)]
         return f"<b>{title}</b>, last row:{_html.table(rows)}"
 
-    def _index(self, time: float | None = None, velocity: float | None = None, index: int | None = None) -> int:
+    def _index(
+        self, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None
+    ) -> int:
         """The number of the stored instant."""
+        if method is not None:
+            choice("method", method, Nearest)
         kept = len(self._field_steps)
         if kept == 0:
             raise CaseError("no fields were kept")
@@ -477,10 +521,20 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             if not -1e-12 * end <= wanted <= (1 + 1e-12) * end:
                 raise CaseError(f"{what} is {wanted:g} {unit}, but must be one of the run, 0 {unit} to {end:g} {unit}")
             # Of two at the same time, before and after a jump, the later.
-            return int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+            nearest = int(kept - 1 - np.argmin(np.abs(self.field_times - wanted)[::-1]))
+            # Times that were computed in another way differ by rounding.
+            if method is None and abs(self.field_times[nearest] - wanted) > 1e-9 * abs(wanted) + 1e-12 * end:
+                raise NotStored(self._neighbours(what, unit, wanted))
+            return nearest
         if not -kept <= (place := -1 if index is None else index) < kept:
             raise CaseError(f"index is {index}, but fields were kept at {kept} times")
         return int(place) % kept
+
+    def _neighbours(self, what: str, unit: str, wanted: float) -> str:
+        """Where the fields beside a time or velocity are."""
+        stored = np.unique(self.field_times)
+        beside = [f"{float(one):.9g} {unit}" for one in (*stored[stored < wanted][-1:], *stored[stored > wanted][:1])]
+        return f'no fields were kept at {what} {wanted:.9g} {unit}, but at {" and ".join(beside)}: give one of these, or method="nearest"'
 
     def _stress_volume(self, name: str) -> Floats:
         """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""

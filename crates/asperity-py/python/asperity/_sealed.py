@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ._arrays import frozen
+from ._arrays import frozen, meant
 
 
 def read_only(value: Any) -> Any:
@@ -30,7 +30,20 @@ class ReadOnlyArrays:
         self.__dict__.update({name: read_only(value) for name, value in state.items()})
 
 
-class Sealed:
+class Named:
+    """An object whose misspelt attributes are answered with the nearest one."""
+
+    if not TYPE_CHECKING:  # where it would hide misspelt names
+
+        def __getattr__(self, name):
+            # What a property says itself goes first.
+            if any(name in vars(kind) for kind in type(self).__mro__):
+                return object.__getattribute__(self, name)
+            known = [] if name.startswith("_") else [one for one in dir(self) if one[0] != "_"]
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{meant(name, known)}")
+
+
+class Sealed(Named):
     """What does not change once it is made: public attributes cannot be set, and arrays are read-only."""
 
     def _hold(self, **values: Any) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._declared import arguments_of
-from ._arrays import AnyPath, cells_of, path_of
+from ._arrays import AnyPath, cells_of, meant, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -26,9 +26,11 @@ from ._record import Keep, Record
 from ._result import Result, open
 from ._rows import Numbers
 from ._sealed import Sealed
+from ._spoken import spoken
+from ._states import State
 
 if TYPE_CHECKING:
-    from ._arrays import Floats
+    from ._arrays import Floats, Scalar
 
 
 #: A case: the path of its file, its text or its keys; and changed keys of it.
@@ -77,11 +79,18 @@ class Step(Numbers, Sealed):
         """Gap of the deformed surfaces [m], shape (nx, ny)."""
         return self.field("gap")
 
+    def _state(self) -> State:
+        setup = self._march._setup
+        contact = np.ascontiguousarray(self.field("contact") > 0, dtype=np.uint8)
+        shear = (self.field("traction_x"), self.field("traction_y")) if "friction" in setup else None
+        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear)
+
     def _number(self, name: str) -> float:
         row = self.__dict__["_row"]
         if name not in row or name in HISTOGRAMS:
             numbers = ", ".join(key for key in row if key not in HISTOGRAMS)
-            raise AttributeError(f"a step has no {name!r}; it has {numbers}, row and field(name)")
+            near = meant(name, [*row, "field", "row", "index", "pressure", "gap"], 0.75)
+            raise AttributeError(f"a step has no {name!r}{near or f'; it has {numbers}, row and field(name)'}")
         value: float = row[name]
         return value
 
@@ -113,11 +122,13 @@ class March(Sealed):
     def __init__(self, given: Problem, output: str | None = None, force: bool = False) -> None:
         keep = Keep(given)
         shape, keys, arrays = given.parts()
-        self._core = _core.March(keys, arrays, keep.steps)
+        with spoken():
+            self._core = _core.March(keys, arrays, keep.steps)
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=shape.gap(), size=shape.size)
-        self._setup: dict[str, Any] = {**json.loads(self._core.setup), **({"sampled": given.sampled} if given.sampled else {})}
+        told = {"given": given.given(shape, keys), "steps": shape.history, **({"sampled": given.sampled} if given.sampled else {})}
+        self._setup: dict[str, Any] = {**json.loads(self._core.setup), **told}
         fits = [material.fit for body in bodies_of(given.material) for material in materials_of(body) if material.fit is not None]
         self._of_fits = [finding for fit in fits for finding in fit.findings]
         self._record = Record(self, keep, output, force)
@@ -149,14 +160,15 @@ class March(Sealed):
 
     def __next__(self) -> Step:
         with self._turn:
-            if not self._core.advance():
-                raise StopIteration
+            with spoken():
+                if not self._core.advance():
+                    raise StopIteration
             step = self._step(self._core.done - 1)
             self._record.see(step)
             return step
 
     def prescribe(
-        self, *, load: History | float | None = None, pressure: History | float | None = None, approach: History | float | None = None
+        self, *, load: History | Scalar | None = None, pressure: History | Scalar | None = None, approach: History | Scalar | None = None
     ) -> None:
         """From the last row on this load [N], mean pressure [Pa] or approach [m] is prescribed, in place of what was to come: a stage that
         begins here and lasts to the end of the run, with its times.
@@ -181,7 +193,8 @@ class March(Sealed):
         """
         keys = control_keys({"load": load, "pressure": pressure, "approach": approach}, "prescribe", "N/m" if len(self.size) == 1 else "N")
         with self._turn:
-            self._core.prescribe(keys)
+            with spoken():
+                self._core.prescribe(keys)
             self._record.prescribed.append({"row": len(self._record), **keys})
 
     def _step(self, index: int) -> Step:

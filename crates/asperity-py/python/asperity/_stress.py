@@ -5,17 +5,22 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
+from ._columns import dataset, variable
 from ._core import CaseError
 from ._findings import warn_caller
 from ._sealed import Sealed
-from ._surface import _parts
+from ._states import HasState, refuse_beside, said
+from ._surface import SurfaceLike, _parts
 from ._words import Boundary
-from ._arrays import Floats, array, as_plane, cells_of, field, frozen, number, plain, size_of
+
+if TYPE_CHECKING:
+    import xarray
+from ._arrays import Floats, Scalar, Size, array, as_plane, cells_of, centres, choice, field, frozen, number, plain, size_of
 
 
 def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
@@ -23,6 +28,15 @@ def _lazily(name: str, words: str) -> functools.cached_property[Floats]:
     made = functools.cached_property(lambda stress: stress._field(name))
     made.__doc__ = words
     return made
+
+
+#: Fields of a dataset.
+_FIELDS = ("xx", "yy", "zz", "xy", "xz", "yz", "mises", "tresca", "tension")
+
+
+def _lower(words: str) -> str:
+    """A sentence as the name of an array."""
+    return (words if words.startswith("von") else words[0].lower() + words[1:]).rstrip(".")
 
 
 class Stress(Sealed):
@@ -94,6 +108,28 @@ class Stress(Sealed):
             warn_caller("the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it", UserWarning)
         return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}
 
+    def to_xarray(self, *names: str) -> xarray.Dataset:
+        """Fields over depth and cells as xarray.Dataset, by default the six components, `mises`, `tresca` and `tension`, named
+        `stress_xx`, ..., `stress_mises`: beside those of a result in ``result.to_xarray().merge(below.to_xarray())``.
+
+        >>> import asperity as asp
+        >>> ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=20e-3)
+        >>> result = asp.solve(ball, asp.Elastic(young=1e6, poisson=0.3), load=1e-3, times=[1.0])
+        >>> whole = result.to_xarray().merge(result.stress(depths=[0.0, 1e-4]).to_xarray("zz", "mises"))
+        >>> whole.stress_mises.dims, whole.stress_zz.attrs["units"], whole.pressure.dims
+        (('depth', 'x', 'y'), 'Pa', ('field_time', 'x', 'y'))
+        """
+        for name in names:
+            choice("the field", name, list(_FIELDS))
+        known = {name: str(vars(Stress)[name].__doc__) for name in _FIELDS}
+        axes = ("x", "y")[: self._pressure.ndim]
+        data = {
+            f"stress_{name}": variable(("depth", *axes), getattr(self, name), "Pa", _lower(known[name]))
+            for name in names or _FIELDS
+        }
+        places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip(axes, self._pressure.shape, self._given[1])}
+        return dataset(data, {"depth": variable("depth", self.depths, "m", "depth below the surface"), **places})
+
     def __repr__(self) -> str:
         ratio = "changing with time" if self._poisson is None else f"{self._poisson:g}"
         cells, deepest = cells_of(self._pressure), self.depths[-1]
@@ -101,8 +137,8 @@ class Stress(Sealed):
 
 
 def stress(
-    pressure: Any, *, size: float | Sequence[float] | None = None, poisson: float, depths: str | Sequence[float] = "auto",
-    boundary: Boundary = "free", tractions: Sequence[Any] | None = None
+    pressure: SurfaceLike | HasState, *, size: Size = None, poisson: Scalar | None = None, depths: str | Sequence[float] = "auto",
+    boundary: Boundary | None = None, tractions: Sequence[Any] | None = None
 ) -> Stress:
     """The stress below a pressure on a half-space.
 
@@ -111,12 +147,13 @@ def stress(
 
     Parameters
     ----------
-    pressure : pressure [Pa], array (nx, ny), or (n,) of a line contact (plane strain)
+    pressure : an :class:`ElasticContact`, a :class:`Result` (its last fields) or a :class:`Step`, with its size, boundary and tractions, or
+        the pressure [Pa], array (nx, ny), or (n,) of a line contact (plane strain)
     size : lengths of the domain along x and y [m], of a line its length; an xarray array with coordinates needs none
-    poisson : Poisson's ratio of the body, 0 to 0.5
+    poisson : Poisson's ratio of the body, 0 to 0.5; results and rows know that of their first body
     depths : depths below the surface [m], rising, each 0 or at least a quarter of a cell; "auto" takes 0 and 24 depths from
         half a cell to the width of the contact (periodic: to half of the shorter side)
-    boundary : "free" or "periodic" (uniform pressure without lateral strain)
+    boundary : "free" or "periodic" (uniform pressure without lateral strain); a bare array without it is taken as free, with a warning
     tractions : tangential tractions along x and y [Pa] with which the other body acts on this one, two arrays like the pressure
 
     Raises
@@ -130,20 +167,41 @@ def stress(
     >>> import asperity as asp
     >>> sphere = asp.Surface.sphere(cells=(64, 64), size=(1e-3, 1e-3), radius=5e-3)
     >>> hertz = asp.elastic(sphere, 1e9, load=1.0)
-    >>> below = asp.stress(hertz.pressure, size=(1e-3, 1e-3), poisson=0.3)
+    >>> below = asp.stress(hertz, poisson=0.3)
     >>> found = below.survey()
     >>> p0 = hertz.pressure.max()
     >>> bool(abs(found["max_tresca"] / p0 - 0.31) < 0.01)
     True
     >>> below.zz.shape
     (25, 64, 64)
+    >>> bool((asp.stress(hertz.pressure, size=hertz.size, poisson=0.3, boundary="free").zz == below.zz).all())
+    True
     """
+    if isinstance(pressure, HasState):
+        refuse_beside("stress", pressure, {"size": size, "boundary": boundary, "tractions": tractions})
+        return of_state(pressure, poisson, depths)
+    edges = choice("boundary", said("stress", "boundary", boundary, "free", '"free" or "periodic"'), Boundary)
+    if poisson is None:
+        raise CaseError("poisson is missing: give the Poisson's ratio of the body, as in poisson=0.3")
     values, extent, _ = _parts(pressure, size, "pressure")
     p = field("pressure", values, line=True)
     shear = None if tractions is None else [as_plane(field("traction", _parts(q, size, "traction")[0], line=True)) for q in tractions]
     if shear is not None and (len(shear) != 2 or any(q.shape != as_plane(p).shape for q in shear)):
         raise CaseError(f"tractions are two arrays of shape {p.shape}, along x and y")
-    return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), boundary, tractions=shear)
+    return Stress(p, size_of("pressure", p, extent), depths, number("poisson", poisson), edges, tractions=shear)
+
+
+def of_state(held: Any, poisson: Scalar | None, depths: str | Sequence[float]) -> Stress:
+    """The stress below a contact, a row, or the last fields of a result."""
+    if hasattr(held, "field_times"):
+        found: Stress = held.stress(depths=depths, poisson=poisson)
+        return found
+    state = held._state()
+    ratio = poisson if poisson is not None else state.poisson[0] if state.poisson else None
+    if ratio is None:
+        raise CaseError(f"the {type(held).__name__} does not say the Poisson's ratio of the body, or it changes with time: give it, as in poisson=0.3")
+    shear = None if state.tractions is None else [as_plane(q) for q in state.tractions]
+    return Stress(state.pressure, list(state.size), depths, number("poisson", ratio), state.boundary, tractions=shear)
 
 
 def changing(setup: dict[str, Any], body: int, rows: tuple[list[int], list[float]], pressures: Floats, size: Sequence[float], depths: Any) -> Stress:

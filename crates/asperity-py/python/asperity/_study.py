@@ -23,7 +23,8 @@ from ._arrays import AnyPath, count, distinct, number
 from ._core import CaseError
 from ._declared import check_call
 from ._findings import Finding, ResultWarning, warn_caller
-from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point
+from ._digest import Walk
+from ._points import Point, Solved, base_of_case, base_of_function, found, label, label_all, note, solve_point, unseen
 from ._processes import cores, shared, solved
 from ._progress import line_of
 from ._columns import COLUMNS, FIELDS, GAS_LEAKS, LEAKS, QUANTITIES, ROW, VECTORS, dataset
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "findings", "finding_codes", "steps", "step", "point"}
+_TAKEN = {*COLUMNS, *FIELDS, *LEAKS, "leak_step", "status", "error", "findings", "finding_codes", "steps", "step", "point", "normal_load"}
 #: And where the dataset holds fields.
 _TAKEN_BY_FIELDS = {"x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
@@ -93,7 +94,9 @@ def study(
     Every point has the same numbers as a single run, to the last bit, for any number of workers and threads. Ctrl-C stops
     within one iteration of the solver; finished points are in the `folder`, and in the dataset `error.result` of the error. A stopped point of a case continues from its last
     checkpoint, one of :func:`solve` or of a function starts again. A point in the folder is identified by its settings and by
-    everything that the points share: the text of the case and the files that it names, or arguments and code of the function.
+    everything that the points share: the text of the case and the files that it names, or the arguments and what the function reaches, its code,
+    closure and globals, the functions, classes and modules among them, installed packages by their version. What cannot be known, the
+    content of a file that the function names or what it runs by ``eval``, is told in a warning where points are read from the folder.
 
     Examples
     --------
@@ -126,7 +129,7 @@ def study(
     for what, given in (("workers", workers), ("threads", threads)):
         if given is not None:
             count(what, given)
-    common = _common(case, plan.names)
+    common, walk = _common(case, plan.names)
     _check_names(common, plan)
     _check_loads(common, over, plan)
     place = None if folder is None else os.path.abspath(os.fspath(folder))
@@ -145,6 +148,7 @@ def study(
     if place is not None:
         note(place, "study", {"asperity": _core.__version__, "parameters": plan.names, "points": names})
         done = {n: answer for n, point in enumerate(points) if (answer := found(point, retry)) is not None}
+        _tell_unseen(walk, [points[n] for n, answer in done.items() if answer[2] is not None], place)
     left = [n for n in range(len(points)) if n not in done]
     show, started = line_of(progress) or (lambda text: None), time.monotonic()
 
@@ -176,6 +180,16 @@ def study(
         error.result = data  # type: ignore[attr-defined]
         raise
     return data
+
+
+def _tell_unseen(walk: Walk, points: list[Point], place: str) -> None:
+    """A warning of what may have changed since points were stored: a result that is read is then that of something else."""
+    held = list(dict.fromkeys(what for point in points for what in unseen(walk, point)))
+    if held:
+        warn_caller(
+            f"{len(points)} point{'s were' if len(points) > 1 else ' was'} read from {place}, though it is not known whether this changed since: "
+            f"{', '.join(held[:3])}{f' and {len(held) - 3} more' if len(held) > 3 else ''}. Choose another folder where it did", UserWarning
+        )
 
 
 def _warn(points: list[Point], done: dict[int, Solved]) -> None:
@@ -261,22 +275,24 @@ def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
     return pairs
 
 
-def _common(case: Any, names: list[str]) -> dict[str, Any]:
-    """What all points share."""
+def _common(case: Any, names: list[str]) -> tuple[dict[str, Any], Walk]:
+    """What all points share, and the walk through what their function reaches."""
     if isinstance(case, Mapping) and ("material" in case or "material" in names):
         given = {str(key): value for key, value in case.items()}
         known = {*given, *names}
         function = steady if "velocities" in known else slide if known & {"velocity", "path"} else solve
-        return {"fixed": given, "function": function, "base": base_of_function(function, given)}
+        base, walk = base_of_function(function, given)
+        return {"fixed": given, "function": function, "base": base}, walk
     if callable(case) and not isinstance(case, (str, os.PathLike)):
-        return {"function": case, "base": base_of_function(case, {})}
+        base, walk = base_of_function(case, {})
+        return {"function": case, "base": base}, walk
     try:
         path, text = source(case)
         whole = Path(path).read_text(encoding="utf-8") if text is None else text
     except (OSError, UnicodeDecodeError) as error:
         raise CaseError(f"the case {getattr(error, 'filename', None) or case} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     directory = os.path.abspath(os.path.dirname(path) if text is None else path)
-    return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}
+    return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}, Walk()
 
 
 def _check_names(common: dict[str, Any], plan: _Plan) -> None:
@@ -300,18 +316,43 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
     for point, names in itertools.product(plan.points, alternatives):
         whole = {**fixed, **point}
         one_of({name: whole.get(name) for name in names}, f"the point {label_all(point)} needs")
+    if hasattr(function, "options"):
+        _check_arguments(function.options, fixed, plan.points)
 
 
-def _check_keys(common: dict[str, Any], plan: _Plan) -> None:
-    """Refuses keys that a case does not have; wrong values are errors of their points."""
-    keys = overrides(plan.points[0])
+def _check_arguments(options: Any, fixed: dict[str, Any], points: list[dict[str, Any]]) -> None:
+    """Refuses arguments that are wrong in every point; those of a single one are the error of that point."""
+    first: str | None = None
+    for point in points:
+        try:
+            options(**{**fixed, **point}).parts()
+        except Exception as error:  # of a function of time too
+            first = first or (str(error) if isinstance(error, CaseError) else f"{type(error).__name__}: {error}")
+        else:
+            return
+    raise CaseError(f"no point can be solved: {first}")
+
+
+def _fault(common: dict[str, Any], keys: list[str]) -> str | None:
+    """What is wrong with a case; None where nothing is, or where a file is missing, which the points say."""
     try:
         _core.check(common["directory"], common["case"], keys)
     except CaseError as error:
-        if told := [line for line in str(error).splitlines() if "has no key" in line]:
-            raise CaseError("\n".join(told)) from None
+        return str(error)
     except OSError:
         pass
+    return None
+
+
+def _check_keys(common: dict[str, Any], plan: _Plan) -> None:
+    """Refuses keys that a case does not have, and a case that is wrong without them too; wrong values are errors of their points."""
+    fault = _fault(common, overrides(plan.points[0]))
+    if fault is None:
+        return
+    if told := [line for line in fault.splitlines() if "has no key" in line]:
+        raise CaseError("\n".join(told))
+    if fault == _fault(common, []):
+        raise CaseError(f"no point can be solved: {fault}")
 
 
 def _on_cluster(client: Any, points: list[Point]) -> Generator[tuple[int, Solved], None, None]:
@@ -407,6 +448,8 @@ class _Table:
             attributes = {"units": " or ".join(sorted(units)) or entry.unit, "long_name": entry.words}
             if name != "time":
                 self.columns[name] = self.array(table, attributes, "step", *["axis"] * (name in VECTORS))
+                if name == "load":  # a method of datasets
+                    self.columns["normal_load"] = self.columns[name]
                 continue
             full = table[steps == most] if most else table
             along = "velocity" if any(result.is_sweep for result in self.whole) else "time"

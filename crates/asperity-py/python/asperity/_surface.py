@@ -8,22 +8,27 @@ import os
 import re
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import Any, Protocol, Union
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
 import numpy as np
 
 from . import _core, _foreign, _html
-from ._arrays import AnyArray, AnyPath, Floats, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
+from ._arrays import AnyArray, AnyPath, ArrayLike, Floats, Scalar, Size, along, angle, as_plane, cell_counts, cells_of, centres, count, counts, field, frozen, in_order, lengths, number, numbers_of, pair
 from ._arrays import pitch_of, size_of
 from ._core import CaseError
 from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
 from ._parameters import call, parameters
-from ._sealed import ReadOnlyArrays
+from ._sealed import Named, ReadOnlyArrays
+from ._spoken import spoken
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
+
+
+if TYPE_CHECKING:
+    import xarray
 
 
 class Labelled(Protocol):
@@ -42,6 +47,8 @@ class Topography(Protocol):
 
 #: What adds to a surface; of numbers only the 0 with which sum() begins.
 Summand = Union["Surface", AnyArray, Labelled, Topography, int]
+#: What a surface is given as: one of this package, heights as an array, an array of xarray, a topography of SurfaceTopography.
+SurfaceLike = Union["Surface", ArrayLike, Labelled, Topography]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +67,7 @@ class Autocorrelation(ReadOnlyArrays):
 
 
 @dataclass(frozen=True, eq=False)
-class Surface(OnGrid):
+class Surface(OnGrid, Named):
     """Heights [m] at the cell centres of a rectangle, shape (nx, ny), or of a line, shape (n,), pointing out of their body.
 
     A line is for line contacts in plane strain, in which nothing changes along y; its `size` is one length, (L,).
@@ -96,6 +103,16 @@ class Surface(OnGrid):
         """What it was made with; none of heights that were given, or changed."""
         return dict(self.__dict__.get("_made", {}))
 
+    @property
+    def _origin(self) -> list[dict[str, Any]]:
+        """The parts, as those of a case, that it was made or read from; what was done to them since is in the history."""
+        return list(self.__dict__.get("_from", [{"kind": "array"}]))
+
+    def _of(self, origin: list[dict[str, Any]]) -> Surface:
+        """The surface itself, of this origin."""
+        object.__setattr__(self, "_from", origin)
+        return self
+
     # Operators of numpy arrays leave a surface to its own.
     __array_ufunc__ = None
     __hash__ = None  # type: ignore[assignment]
@@ -108,7 +125,7 @@ class Surface(OnGrid):
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        made = {"_made": self._parameters} if self._parameters else None
+        made = {name: self.__dict__[name] for name in ("_made", "_from") if name in self.__dict__} or None
         return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,), made
 
     @property
@@ -147,7 +164,7 @@ class Surface(OnGrid):
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         if done := [*self.history, *other.history]:
             known["history"] = done
-        return Surface(self.heights + other.heights, size=self.size, metadata=known)
+        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin])
 
     def __radd__(self, other: Summand) -> Surface:
         if isinstance(other, np.ndarray):
@@ -184,12 +201,13 @@ class Surface(OnGrid):
 
     def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
         """The surface with other heights, on which this was done."""
-        return Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
+        changed = Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
+        return changed._of(self._origin)
 
     def __pos__(self) -> Surface:
         return self
 
-    def to_xarray(self) -> Any:
+    def to_xarray(self) -> xarray.DataArray:
         """The heights as xarray.DataArray with coordinates x and y, and units."""
         import xarray
 
@@ -282,9 +300,18 @@ class Surface(OnGrid):
         """Mirrored along "x" or "y"."""
         return self.process(f"flip={axis}")
 
-    def rotate(self, quarter_turns: int = 1) -> Surface:
-        """Turned by quarter turns from x towards y; negative ones turn back."""
-        return self.process(f"rotate={count('quarter_turns', quarter_turns, -(2**31))}")
+    def rotate(self, turns: int = 1, /, *, quarter_turns: int | None = None) -> Surface:
+        """Turned by quarter turns of 90 degrees from x towards y; negative ones turn back. More than 3 need the name `quarter_turns`.
+
+        >>> import asperity as asp, numpy as np
+        >>> asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(1e-6, 1e-6)).rotate(quarter_turns=1).heights.tolist()
+        [[2.0, 4.0], [1.0, 3.0]]
+        """
+        whole = count("quarter_turns", turns if quarter_turns is None else quarter_turns, -(2**31))
+        if quarter_turns is None and abs(whole) > 3:
+            nearest = f" ({whole} degrees are rotate({whole // 90}))" if whole % 90 == 0 and abs(whole) <= 270 else ""
+            raise CaseError(f"rotate turns by quarter turns, and {whole} of them are meant for degrees{nearest}; else write rotate(quarter_turns={whole})")
+        return self.process(f"rotate={whole}")
 
     def invert(self) -> Surface:
         """Heights of the other sign: a replica."""
@@ -513,15 +540,17 @@ class Surface(OnGrid):
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
+        how = {"size": given, "height_unit": unit, "channel": name, "transpose": transpose, "level": level or "none", "fill": fill}
+        surface._of([{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}])
         surface = surface if level is None else surface.level(level)
         return surface if fill is None else surface.fill(fill)
 
     @staticmethod
     def self_affine(
-        *, cells: int | Sequence[int], size: float | Sequence[float], hurst: float, longest: float, shortest: float,
-        rms_gradient: float | None = None, rms_height: float | None = None, roll_off: float | None = None, seed: int = 0,
-        lay_angle: float | None = None, lay_ratio: float | None = None, skewness: float | None = None,
-        kurtosis: float | None = None
+        *, cells: int | Sequence[int], size: Size, hurst: Scalar, longest: Scalar, shortest: Scalar,
+        rms_gradient: Scalar | None = None, rms_height: Scalar | None = None, roll_off: Scalar | None = None, seed: int = 0,
+        lay_angle: Scalar | None = None, lay_ratio: Scalar | None = None, skewness: Scalar | None = None,
+        kurtosis: Scalar | None = None
     ) -> Surface:
         """Self-affine roughness, periodic, the same on every machine for one seed.
 
@@ -557,17 +586,17 @@ class Surface(OnGrid):
         return _made("self-affine", cells, (1e-4, 1e-4), None, keys)
 
     @staticmethod
-    def sphere(*, cells: Sequence[int], size: Sequence[float], radius: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def sphere(*, cells: Sequence[int], size: Size, radius: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of that radius [m]; `center` [m] from the middle of the domain."""
         return _shape("sphere", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def ellipsoid(*, cells: Sequence[int], size: Sequence[float], radius_x: float, radius_y: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def ellipsoid(*, cells: Sequence[int], size: Size, radius_x: Scalar, radius_y: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A paraboloid of two radii [m]; an infinite one makes a cylinder."""
         return _shape("ellipsoid", cells, size, center, {"radius_x": radius_x, "radius_y": radius_y})
 
     @staticmethod
-    def cylinder(*, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0) -> Surface:
+    def cylinder(*, cells: int | Sequence[int], size: Size, radius: Scalar, center: float | Sequence[float] = 0.0) -> Surface:
         """A cylinder along y, as a parabola of that radius [m]; `center` [m] along x from the middle of the domain.
 
         >>> import asperity as asp, numpy as np
@@ -579,18 +608,18 @@ class Surface(OnGrid):
         return _shape("cylinder", cells, size, center, {"radius": radius})
 
     @staticmethod
-    def wedge(*, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0) -> Surface:
+    def wedge(*, cells: int | Sequence[int], size: Size, slope: Scalar, center: float | Sequence[float] = 0.0) -> Surface:
         """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
         return _shape("wedge", cells, size, center, {"slope": slope})
 
     @staticmethod
-    def cone(*, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)) -> Surface:
+    def cone(*, cells: Sequence[int], size: Size, slope: Scalar, center: Sequence[float] = (0.0, 0.0)) -> Surface:
         """A cone that rises by `slope` per length."""
         return _shape("cone", cells, size, center, {"slope": slope})
 
     @staticmethod
     def flat_punch(
-        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float | None = None,
+        *, cells: int | Sequence[int], size: Size, radius: Scalar | None = None,
         sides: Size = None, center: float | Sequence[float] = (0.0, 0.0)
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
@@ -599,7 +628,7 @@ class Surface(OnGrid):
         return _shape("flat-punch", cells, size, center, {"radius": radius}, face)
 
     @staticmethod
-    def wave(*, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]) -> Surface:
+    def wave(*, cells: int | Sequence[int], size: Size, amplitude: Scalar, wavelength: float | Sequence[float]) -> Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
         return _made("wave", cells, size, {**numbers_of({"amplitude": amplitude}), "wavelength": _along_both("wavelength", wavelength, size)})
 
@@ -625,11 +654,12 @@ def _made(kind: str, cells: Any, size: Any, made: dict[str, Any] | None, keys: d
     if len(grid) != len(extent):
         raise CaseError(f"cells is {grid} and size {extent}, but both must have two numbers, or both one for a line of cells")
     given = {"size" if name == "sides" else name: value for name, value in (keys or made or {}).items()}
-    heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
+    with spoken():
+        heights, single = _core.heights({"domain": {"cells": list(grid), "size": list(extent)}, "surface": [{"kind": kind, **given}]})
     surface = Surface(heights.reshape(grid), size=extent, metadata={"single": True} if single else None)
     if made is not None:
         object.__setattr__(surface, "_made", {"kind": kind, **made})
-    return surface
+    return surface._of([{"kind": kind, **given}])
 
 
 def as_surface(value: Any, size: Size) -> Surface:

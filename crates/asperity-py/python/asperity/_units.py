@@ -23,12 +23,15 @@ UNITS: dict[str, str] = {
         "radius_uncertainty, thickness_uncertainty",
         "Pa": "young, young_kelvin, young_equilibrium, young_instantaneous, shear, shear_kelvin, shear_equilibrium, shear_instantaneous, E, modulus, "
         "bulk_modulus, contact_modulus, shear_moduli, equilibrium, equilibrium modulus, instantaneous modulus, relaxation modulus, storage modulus, "
-        "loss modulus, hardness, strength, shear_stress, pressure, largest_pressure, start of the pressure, pressure_drop, inlet, outlet, threshold",
+        "loss modulus, hardness, strength, shear_limit, shear_stress, shear_stress peak, pressure, largest_pressure, start of the pressure, pressure_drop, inlet, outlet, threshold",
         "1/Pa": "compliance, creep compliance",
         "s": "time, times, end, first instant, first step, duration, start, rise, fall, hold, relaxation_time, retardation_time, characteristic_times, "
-        "field_times, first time of the window, last time of the window, include",
+        "field_times, heated_for, first time of the window, last time of the window, include",
         "K": "temperature, temperatures, reference, c2",
-        "m/s": "velocity, velocities",
+        "m/s": "velocity, velocities, shear_stress velocity",
+        "m^2/N": "coefficient",
+        "W/(m K)": "conductivity",
+        "m^2/s": "diffusivity",
         "N": "load",
         "N/m": "spring_constant, spring_constant_uncertainty",
         "J/m^2": "work",

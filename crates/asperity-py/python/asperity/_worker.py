@@ -11,6 +11,7 @@ import pickle
 import queue
 import sys
 import threading
+import traceback
 import _thread
 from typing import Any, BinaryIO
 
@@ -40,12 +41,21 @@ def main() -> None:
     threading.Thread(target=_read, args=(source, tasks), daemon=True).start()
     try:
         while (task := tasks.get()) is not None:
-            answer = pickle.dumps(solve_point(pickle.loads(task)), protocol=pickle.HIGHEST_PROTOCOL)
-            answers.write(answer)
+            try:
+                point = pickle.loads(task)
+            except Exception as error:  # modules may fail with any error
+                answer: Any = "failed", f"the point could not be read in its process: {type(error).__name__}: {error}", None
+            else:
+                answer = solve_point(point)
+            answers.write(pickle.dumps(answer, protocol=pickle.HIGHEST_PROTOCOL))
             answers.flush()
     except (KeyboardInterrupt, BrokenPipeError):
         pass
-    # Not waiting for the thread that reads.
+    except BaseException:
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)
+    # Not waiting for the thread that reads, which Python would end with an abort.
     os._exit(0)
 
 

@@ -220,31 +220,31 @@ class Plots:
         last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given; with adhesion 0
         is in their middle. A narrow domain is
         stretched, as its title says, where `aspect` is not given. Of a line contact a curve over x."""
-        return self._map("pressure", "inferno", _At(time=time, velocity=velocity, index=index), ax, style)
+        return self._map("pressure", "inferno", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
 
     def gap(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the gap, as :meth:`pressure`, but what is in contact is light. Where a few pits take more than a third of the range of the
         values, the colours end at the quantile of a thousandth, and an arrow of the bar points beyond."""
-        return self._map("gap", "viridis", _At(time=time, velocity=velocity, index=index), ax, style)
+        return self._map("gap", "viridis", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
 
     def displacement(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
         """Map of the displacement, as :meth:`gap`, with its own colours everywhere."""
-        return self._map("displacement", "viridis", _At(time=time, velocity=velocity, index=index), ax, style)
+        return self._map("displacement", "viridis", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
 
     def flattening(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
         """Map of the permanent flattening, as :meth:`displacement`."""
-        return self._map("flattening", "viridis", _At(time=time, velocity=velocity, index=index), ax, style)
+        return self._map("flattening", "viridis", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
 
     def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the contact state: open, in contact, at the hardness."""
         from matplotlib.colors import ListedColormap
         from matplotlib.patches import Patch
 
-        result, at = self._result, _At(time=time, velocity=velocity, index=index)
+        result, at = self._result, _At(time=time, velocity=velocity, index=index, method="nearest")
         states = result.field("contact", **at) if "contact" in result.fields else result._touches(**at).astype(float)
         ax = _draw.axes(ax, style, "curve" if result.is_line else "map", result.size)
         self._tell(ax, at, notes=[] if result.is_line else [_draw.stretched(result.size, style)])
@@ -262,7 +262,7 @@ class Plots:
 
     def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the contact spots by their number, the largest first; what is open is light."""
-        result, at = self._result, _At(time=time, velocity=velocity, index=index)
+        result, at = self._result, _At(time=time, velocity=velocity, index=index, method="nearest")
         labels = result.spots(**at)
         if result.is_line:
             raise CaseError("a map of the spots needs a contact over a plane; result.spots() has the numbers")
@@ -281,7 +281,7 @@ class Plots:
     ) -> Axes:
         """A field along x at `y` [m]; default the pressure through the middle. In a new figure the gap has the undeformed one beside,
         where no `label` is given."""
-        result, at = self._result, _At(time=time, velocity=velocity, index=index)
+        result, at = self._result, _At(time=time, velocity=velocity, index=index, method="nearest")
         if result.is_line:
             return self._line(field, at, ax, style)
         place = 0.5 * result.size[1] if y is None else number("y", y)

@@ -1,0 +1,139 @@
+"""The case of a result as it was given: in words for a paper, and as the text of a case file that runs it again."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._prefixes import quantity
+from ._units import UNITS
+
+if TYPE_CHECKING:
+    from ._result import Result
+
+#: Kinds of a part of the surface in words.
+_PARTS = {"self-affine": "self-affine roughness", "file": "heights of a file", "array": "heights given as an array", "wave": "a wave", "ellipsoid": "an ellipsoid"}
+_WORDS = {"hurst": "Hurst exponent", "rms_gradient": "rms gradient", "rms_height": "rms height", "roll_off": "roll-off", "poisson": "Poisson's ratio"}
+#: What a control is measured in; values of a history have its unit.
+_CONTROLLED = {"load": "N", "pressure": "Pa", "approach": "m"}
+_VALUES = ("value", "peak", "mean", "amplitude", "from")
+#: More numbers than these are left to the case.
+_MOST = 12
+
+
+def given(result: Result) -> dict[str, Any] | None:
+    """The keys of the case; None where they are not known."""
+    known: dict[str, Any] | None = result._setup.get("given")
+    text = result._attributes.get("case")
+    if known is None and text:
+        try:
+            known = importlib.import_module("tomllib").loads(text)
+        except ImportError:  # before Python 3.11
+            return None
+    return known
+
+
+def text_of(result: Result) -> str:
+    """The case as a file, with remarks on what a file cannot say; empty where it is not known."""
+    if text := result._attributes.get("case"):
+        return str(text).rstrip()
+    known = given(result)
+    return "" if known is None else "\n".join([*_remarks(result, known), _core.case_text(known).rstrip()])
+
+
+def _remarks(result: Result, known: dict[str, Any]) -> Iterator[str]:
+    """What keys of a case do not say."""
+    setup = result._setup
+    if any(part.get("kind") == "array" for part in known.get("surface", [])):
+        yield "# The heights were given as an array: store them in a file, and name it in the part of the kind array."
+    if done := steps(setup):
+        yield f"# What was done to the heights: {'; '.join(done)}."
+    if setup.get("hardness_of_cells"):
+        yield "# The hardness of each cell was given as an array."
+    for table in ("friction", "wear"):
+        if "array" in known.get(table, {}):
+            yield f"# The coefficients of [{table}] were given as an array."
+    for one in setup.get("prescribed") or []:
+        yield f"# From row {one['row']} on was prescribed: {one['control']}, {_listed(one['history'], _CONTROLLED.get(one['control'], ''))}."
+
+
+def steps(setup: dict[str, Any]) -> list[str]:
+    """What was done to the heights since they were made or read."""
+    return list(map(str, setup.get("steps") or setup.get("preparation") or []))
+
+
+def surfaces(known: dict[str, Any]) -> str:
+    """How the surfaces were made."""
+    told = []
+    for part in known.get("surface", []):
+        name = _PARTS.get(part["kind"], f"a {part['kind'].replace('-', ' ')}")
+        words = _listed({key: value for key, value in part.items() if key not in ("kind", "array", "single", "history") and not _is_middle(key, value)})
+        told.append(f"{name} ({words})" if words else name)
+    return f"The surface is {' plus '.join(told)}." if told else ""
+
+
+def _is_middle(key: str, value: Any) -> bool:
+    return key == "center" and not np.any(np.asarray([0.0 if one in (0, "0 m") else 1.0 for one in value]))
+
+
+def materials(known: dict[str, Any]) -> str:
+    """The numbers of the materials."""
+    told = []
+    for n, body in enumerate(known.get("body", [])):
+        for part in [body, *body.get("layer", [])]:
+            model = dict(part.get("material") or {})
+            if words := _listed({key: value for key, value in model.items() if key != "model"}):
+                own = body.get("name", f"body {n + 1}")
+                told.append(f"{own if part is body else 'a layer of ' + own}: {words}")
+    return f"The parameters of the materials are {'; '.join(told)}." if told else ""
+
+
+def load(known: dict[str, Any], unit: str) -> str:
+    """The history that was prescribed, in brackets; empty of a table, which is long, and of stages."""
+    table = known.get("load", {})
+    history = table.get("history", {})
+    if not history or history.get("kind") == "table":
+        return ""
+    return f" ({_listed(history, unit if table.get('control') == 'load' else _CONTROLLED.get(table.get('control', ''), ''))})"
+
+
+def motion(known: dict[str, Any]) -> str:
+    """How warm the surfaces become, what the fluid is, and the stress along the surfaces."""
+    table = known.get("motion", {})
+    told = [f" Along the surfaces acts the shear stress {_value('shear_stress', table['shear_stress'], '')}."] if "shear_stress" in table else []
+    for name, words in (("flash", "The flash temperature is that of"), ("leakage", "The leak is that of")):
+        if known.get(name):
+            told.append(f" {words} {_listed(known[name])}.")
+    return "".join(told).strip()
+
+
+def _listed(table: dict[str, Any], unit: str = "") -> str:
+    """Keys with their values; of a list that is long the number of its entries."""
+    words = []
+    for key, value in sorted(table.items(), key=lambda item: item[0] != "kind"):
+        if value is None:
+            continue
+        shown = _value(key, value, unit if key in _VALUES else "")
+        words.append(shown if key == "kind" else f"{_WORDS.get(key, key.replace('_', ' '))} {shown}")
+    return ", ".join(words)
+
+
+def _value(key: str, value: Any, unit: str) -> str:
+    unit = unit or _UNITS.get(key, "")
+    if isinstance(value, dict):
+        return f"({_listed(value, unit)})"
+    if isinstance(value, (list, tuple)):
+        if len(value) > _MOST:
+            return f"{len(value)} values"
+        return f"[{', '.join(_value(key, one, unit) for one in value)}]"
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    return quantity(float(value), unit) if unit and np.isfinite(value) else f"{value:.12g}{f' {unit}' if unit else ''}"
+
+
+#: Units of keys whose parameter has another name or more than one meaning.
+_UNITS = {**UNITS, "conductivity": "W/(m K)", "diffusivity": "m2/s", "heated_for": "s", "shear_limit": "Pa", "instantaneous": ""}

@@ -1,0 +1,113 @@
+"""What a result says of its methods is enough to do it again: the case in its text gives the same numbers."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+SIZE = (1e-3, 1e-3)
+BALL = asp.Surface.sphere(cells=(24, 24), size=SIZE, radius=20e-3)
+ROUGH = asp.Surface.self_affine(cells=(24, 24), size=SIZE, hurst=0.8, rms_gradient=0.01, longest=5e-4, shortest=2e-4, roll_off=4e-4, seed=3)
+WAVE = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+LINE = asp.Surface.cylinder(cells=64, size=2e-3, radius=10e-3)
+ZENER = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5, name="rubber")
+PRONY = asp.Prony(equilibrium=2e6, terms=[(1e6, 0.5), (2e6, 5.0)], poisson=0.45)
+STEEL = asp.Elastic(young=210e9, poisson=0.3)
+
+#: Results, and words of their paragraph.
+RUNS: dict[str, tuple[Callable[[], asp.Result], list[str]]] = {
+    "rough": (
+        lambda: asp.solve(BALL + ROUGH, PRONY, load=asp.triangle(peak=5e-3, rise=1.0, fall=2.0), times=asp.uniform(4.0, 4)),
+        ["a sphere (radius 20 mm) plus self-affine roughness (Hurst exponent 0.8, rms gradient 0.01, longest 500 µm, shortest 200 µm, roll-off 400 µm, seed 3)",
+         "terms [(modulus 1 MPa, time 500 ms), (modulus 2 MPa, time 5 s)]", "The load was prescribed (triangle, peak 5 mN, rise 1 s, fall 2 s)."],
+    ),
+    "hard": (
+        lambda: asp.solve(BALL, STEEL, approach=asp.ramp(1e-6, duration=1.0), times=asp.log(2.0, 4, first=0.1), hardness=1e9, plasticity="accumulate"),
+        ["young 210 GPa", "cut off at the hardness, 1 GPa", "The approach was prescribed (ramp, value 1 µm, duration 1 s)."],
+    ),
+    "line": (lambda: asp.solve(LINE, PRONY, load=asp.sine(mean=100.0, amplitude=50.0, frequency=0.5), times=asp.uniform(2.0, 40)), ["a cylinder (radius 10 mm)", "mean 100 N/m"]),
+    "layer": (
+        lambda: asp.solve(BALL, asp.Body(layers=[asp.Layer(thickness=1e-4, material=ZENER)], base="rigid"), load=1e-3, times=[0.1, 1.0]),
+        ["a layer of"],
+    ),
+    "stages": (
+        lambda: asp.solve(BALL, PRONY, stages=[asp.Stage(load=asp.ramp(1e-3, duration=1.0), duration=1.0), asp.Stage(approach=asp.hold())], times=asp.uniform(3.0, 6)),
+        ["2 stages prescribed in turn load, approach."],
+    ),
+    "adhesion": (
+        lambda: asp.solve(BALL, PRONY, approach=asp.ramp(5e-7, duration=1.0), times=asp.uniform(1.0, 3), adhesion=asp.Adhesion(work=0.01, range=5e-6)),
+        ["10 mJ/m²", "range 5 µm"],
+    ),
+    "friction": (
+        lambda: asp.solve(BALL, STEEL, load=10.0, times=asp.uniform(1.0, 2), friction=asp.Friction(0.3, shear_limit=1e9), tangential=asp.tangential(force=asp.ramp(1.0, duration=1.0))),
+        ["coefficient 0.3"],
+    ),
+    "slide": (
+        lambda: asp.slide(WAVE, ZENER, pressure=2e4, velocity=0.05, times=[0.02], boundary="periodic", wear=asp.Wear(1e-15), flash=asp.Flash(0.2, 1e-7, friction=0.5, partition="track", heated_for=1.0)),
+        ["the coefficient 1e-15 m²/N", "conductivity 0.2 W/(m K)", "friction 0.5"],
+    ),
+    "steady": (lambda: asp.steady(WAVE, ZENER, pressure=2e4, velocities=[1e-3, 1e-2], boundary="periodic", shear_stress=1e4), ["the shear stress 10 kPa"]),
+    "function": (
+        lambda: asp.solve(BALL, PRONY, load=lambda t: 1e-3 * t, times=asp.uniform(2.0, 4), fields=[]),
+        ["The load was prescribed. The load is a function of time"],
+    ),
+    "contact": (lambda: asp.elastic(BALL, 2e6, load=1e-3, tolerance=1e-8, method="polonsky-keer", hardness=1e4).to_result(), ["The contact modulus is 2 MPa."]),
+}
+
+
+def again(text: str, folder: object) -> asp.Result:
+    return asp.run(text.split("SI units:\n\n")[1].split("\n\n@")[0], output=f"{folder}/again.zarr", progress=False)
+
+
+@pytest.mark.parametrize("name", RUNS)
+def test_the_text_of_a_result_runs_it_again(name: str, tmp_path) -> None:
+    run, expected = RUNS[name]
+    result = run()
+    text = result.methods()
+    for words in expected:
+        assert words in text, (words, text)
+    same = again(result.methods(bibtex=True), tmp_path)
+    # A single contact has one row; the case of it is held to a time.
+    rows = slice(None) if name != "contact" else slice(0, 1)
+    for column in ("approach", "load", "contact_area", "max_pressure"):
+        ours, theirs = getattr(result, column), getattr(same, column)[rows]
+        # A surface of known shape is shifted exactly, an array by its waves; a single contact goes by other moduli to the same E*.
+        assert np.allclose(ours, theirs, rtol={"slide": 1e-7, "steady": 1e-7, "contact": 1e-7}.get(name, 0.0), atol=0.0), column
+    result.save(tmp_path / "stored.zarr")
+    assert asp.open(tmp_path / "stored.zarr").methods() == text and "case in full" not in result.methods(case=False)
+
+
+def test_an_infinite_wavelength_goes_through_a_file(tmp_path) -> None:
+    contact = asp.elastic(WAVE, 1e6, pressure=1e4, boundary="periodic")
+    contact.save(tmp_path / "wave.zarr")
+    text = asp.open(tmp_path / "wave.zarr").methods()
+    assert text == contact.methods() and again(text, tmp_path).approach[0] == pytest.approx(contact.approach, rel=1e-7)
+
+
+def test_a_file_is_named_and_arrays_are_remarked(tmp_path) -> None:
+    ROUGH.write(tmp_path / "rough.npz")
+    read = asp.Surface.read(tmp_path / "rough.npz")
+    result = asp.solve(read + BALL, PRONY, load=1e-3, times=[1.0])
+    assert f"heights of a file (path {tmp_path}/rough.npz, level none)" in result.methods()
+    assert np.array_equal(again(result.methods(), tmp_path).approach, result.approach)
+    other = asp.solve(np.array(BALL.heights), PRONY, size=SIZE, load=1e-3, times=[1.0], hardness=np.full((24, 24), 1e9))
+    text = other.methods()
+    assert "heights given as an array" in text and "# The heights were given as an array" in text and "# The hardness of each cell" in text
+    march = asp.march(2.0 * BALL, PRONY, load=1e-3, times=[1.0, 2.0])
+    next(march)
+    march.prescribe(load=asp.ramp_to(2e-3, duration=0.5))
+    text = march.result().methods()
+    assert "The heights went through: heights times 2" in text and "# From row 1 on was prescribed: load, ramp, from current, value 2 mN, duration 500 ms." in text
+
+
+def test_the_words_of_a_case_file_are_kept(tmp_path) -> None:
+    stored = asp.run("examples/hertz.toml", set={"domain.cells": [24, 24]}, output=tmp_path / "hertz.zarr")
+    text = stored.methods()
+    # The words are read from the case by Python's own reader of TOML, from 3.11 on.
+    assert ("The surface is a sphere (radius 10 mm)" in text or sys.version_info < (3, 11)) and "[domain]" in text
+    assert np.array_equal(again(text, tmp_path).approach, stored.approach)

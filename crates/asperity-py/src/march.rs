@@ -108,12 +108,12 @@ impl March {
         })
     }
 
-    /// From the last row on this is prescribed: the keys `control` and `history` of a stage.
+    /// From the last row on this is prescribed: the keys of a stage.
     fn prescribe(&mut self, keys: Dict<'_>) -> Answer<()> {
         let keys = table(&keys)?;
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (control, course) = given::prescribed(keys, march.simulation()).map_err(error::alone)?;
-        Ok(march.prescribe(control, course)?)
+        let stage = given::prescribed(keys, march.simulation()).map_err(error::alone)?;
+        Ok(march.prescribe(stage)?)
     }
 
     /// The run in numbers, as JSON: the attribute `setup` of its result.

@@ -6,9 +6,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use asperity::load::Stage;
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Control, Course, Grid, Simulation};
+use asperity::{Grid, Simulation};
 use ndarray::Array2;
 use toml::Table;
 
@@ -98,11 +99,11 @@ pub fn surface(keys: &Table) -> Result<(Grid, Part, bool), CaseErrors> {
     })
 }
 
-/// What the keys `control` and `history` of a stage of this simulation prescribe.
+/// The stage of these keys, prescribed between two rows of this simulation.
 ///
 /// # Errors
 /// [`CaseErrors`] with what is wrong.
-pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Course), CaseErrors> {
+pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<Stage, CaseErrors> {
     let adhere = simulation.traction.as_ref().is_some_and(|law| law.as_adhesion().is_some());
     let bodies = Bodies { line: simulation.grid.is_line(), adhere };
     let load = Table::from_iter([("stages".to_owned(), toml::Value::Array(vec![keys.into()]))]);
@@ -112,7 +113,7 @@ pub fn prescribed(keys: Table, simulation: &Simulation) -> Result<(Control, Cour
         let checks = Checks::new(text, Path::new(""));
         let made = load.programme(&checks.at("load"), bodies, &|_, _| 0.0);
         let stage = made.and_then(|mut programme| programme.stages.pop());
-        checks.finish(stage.map(|stage| (stage.control, stage.course)))
+        checks.finish(stage)
     })
 }
 

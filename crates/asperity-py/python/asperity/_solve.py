@@ -8,7 +8,7 @@ import json
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ._arrays import AnyPath, cells_of, meant, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, control_keys
+from ._histories import History, Stage, as_times, one_of
 from ._layers import materials_of
 from ._problem import InStages, Problem, Run, Solve, bodies_of
 from ._progress import Progress
@@ -30,7 +30,10 @@ from ._spoken import spoken
 from ._states import State
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ._arrays import Floats, Scalar
+    from ._histories import Times
 
 
 #: A case: the path of its file, its text or its keys; and changed keys of it.
@@ -168,10 +171,17 @@ class March(Sealed):
             return step
 
     def prescribe(
-        self, *, load: History | Scalar | None = None, pressure: History | Scalar | None = None, approach: History | Scalar | None = None
+        self,
+        *,
+        load: History | Scalar | None = None,
+        pressure: History | Scalar | None = None,
+        approach: History | Scalar | None = None,
+        until: Literal["contact-lost"] | tuple[str, Any] | dict[str, Any] | None = None,
+        times: Times | ArrayLike | None = None,
     ) -> None:
         """From the last row on this load [N], mean pressure [Pa] or approach [m] is prescribed, in place of what was to come: a stage that
-        begins here and lasts to the end of the run, with its times.
+        begins here. It ends at the event `until`, which is that of a :class:`Stage`, and with the last of its own `times`, which are counted
+        from here; then the value reached is held, until something else is prescribed. Without both it lasts to the end of the run, with its times.
 
         A number is a step, which makes a row of no duration first, as at the start of a :class:`Stage`; ``ramp_to(value, duration=...)``
         goes on from the value reached, which a material without instantaneous compliance needs. The rows of the result have the number
@@ -190,8 +200,20 @@ class March(Sealed):
         ...         run.prescribe(load=asp.ramp_to(row.load * areas[0] / row.contact_area, duration=0.05))
         >>> bool(abs(areas[-1] / areas[0] - 1) < 0.05), bool(run.result().load[-1] < 3.5e-3)
         (True, True)
+
+        A retraction in steps of its own, until a tenth of the load is left:
+
+        >>> run = asp.march(cone, rubber, load=5e-3, times=asp.uniform(2.0, 2))
+        >>> rows = [next(run), next(run)]
+        >>> run.prescribe(approach=asp.ramp_to(0.0, duration=0.1), until=("load", 5e-4), times=asp.uniform(0.1, 10))
+        >>> rows += list(run)
+        >>> bool(1.0 < rows[-2].time < 1.1), round(rows[-2].load, 9), rows[-1].time
+        (True, 0.0005, 2.0)
         """
-        keys = control_keys({"load": load, "pressure": pressure, "approach": approach}, "prescribe", "N/m" if len(self.size) == 1 else "N")
+        one_of({"load": load, "pressure": pressure, "approach": approach}, "prescribe")
+        grid = None if times is None else as_times(times)
+        stage = Stage(load=load, pressure=pressure, approach=approach, until=until, times=grid, duration=None if grid is None else grid.end)
+        keys = stage._given("N/m" if len(self.size) == 1 else "N")
         with self._turn:
             with spoken():
                 self._core.prescribe(keys)

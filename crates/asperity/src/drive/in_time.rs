@@ -7,7 +7,7 @@ use asperity_sweep::in_pool;
 
 use super::{Coordinate, Drive};
 use crate::error::{Error, Result, require};
-use crate::load::{Control, Course, Stage};
+use crate::load::Stage;
 use crate::quantities::{Column, RowNumber};
 use crate::simulation::Simulation;
 use crate::step::{Checkpoint, Loader, Proposal, Recorder, Saver, Schedule, Step, Stepper, Summary};
@@ -177,12 +177,13 @@ impl Drive for March {
         self.simulation.plan().instants.iter().map(|instant| instant.time).collect()
     }
 
-    fn prescribe(&mut self, control: Control, course: Course) -> Result<()> {
-        let stage = Stage::new(control, course);
+    fn prescribe(&mut self, stage: Stage) -> Result<()> {
         self.simulation.validate_prescribed(&stage)?;
         let time = self.row.map_or(0.0, |(_, instant, _)| instant.time);
         let expected = "after the first row of a run, and before its last one";
-        require(self.schedule.prescribe(stage), "time of what is prescribed", format!("{time} s"), expected)
+        require(self.schedule.prescribe(stage), "time of what is prescribed", format!("{time} s"), expected)?;
+        self.note();
+        Ok(())
     }
 
     /// Without events, adaptive steps, and stages prescribed between rows.

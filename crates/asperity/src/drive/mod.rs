@@ -21,7 +21,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::{Error, Result};
-use crate::load::{Control, Course};
+use crate::load::Stage;
 use crate::simulation::Simulation;
 use crate::sliding::{Steady, SteadyMotion, Streaming};
 use crate::step::{Checkpoint, Step};
@@ -54,11 +54,11 @@ pub trait Drive: Send {
     /// Whether the last row is done.
     fn finished(&self) -> bool;
 
-    /// From the last row on this is prescribed, in place of what was to come: a stage that begins here and lasts to the end of the run,
-    /// with its times.
+    /// From the last row on this is prescribed, in place of what was to come: a stage that begins here. Without times of its own it has those
+    /// of the run. Where it ends before the run, by its event or its duration, the value reached is held, until another stage is prescribed.
     ///
     /// ```
-    /// use asperity::{drive::{Drive, March}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+    /// use asperity::{drive::{Drive, March}, load::Stage, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
     /// // A feedback: the load is chosen from row to row such that the approach of a creeping contact stays at 3 um.
     /// let grid = Grid::new([32, 32], [2e-3, 2e-3])?;
     /// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
@@ -74,7 +74,7 @@ pub trait Drive: Send {
     ///     if row.coordinate.value() < 4.0 {
     ///         // W is proportional to w^(3/2).
     ///         let value = row.load * (3e-6 / approach).powf(1.5);
-    ///         march.prescribe(Control::Load, History::Step { value }.into())?;
+    ///         march.prescribe(Stage::new(Control::Load, History::Step { value }))?;
     ///         march.advance()?;
     ///     }
     /// }
@@ -85,9 +85,9 @@ pub trait Drive: Send {
     /// # Errors
     /// [`Error::Invalid`] by the rules of a stage; before the first row and after the last; where rows do not
     /// follow one another in time.
-    fn prescribe(&mut self, control: Control, _course: Course) -> Result<()> {
+    fn prescribe(&mut self, stage: Stage) -> Result<()> {
         let expected = "a march in time: other rows do not follow one another";
-        Err(Error::invalid("prescribed quantity", format!("{control:?}").to_lowercase(), expected))
+        Err(Error::invalid("prescribed quantity", format!("{:?}", stage.control).to_lowercase(), expected))
     }
 
     /// Stops, within one iteration of the solver, when `flag` becomes true.

@@ -391,7 +391,7 @@ fn a_hold_of_what_was_reached_and_a_steered_one_at_the_hardness_need_steps_as_we
             let row = step.row();
             diagnostics.see(&step, &row);
             if row.coordinate.value() == 1.0 && row.stage == 0 {
-                march.prescribe(Control::Approach, Course::Hold).unwrap();
+                march.prescribe(Stage::new(Control::Approach, Course::Hold)).unwrap();
             }
         }
         diagnostics.findings(march.simulation())

@@ -83,6 +83,12 @@ impl Simulation {
     pub(crate) fn validate_prescribed(&self, stage: &Stage) -> Result<()> {
         stage.validate(true)?;
         self.validate_control(stage)?;
+        self.validate_event(stage)?;
+        self.validate_awaited(stage)?;
+        if let Some(quantity) = stage.awaited() {
+            let expected = "one that the run computes. Ask for it in the quantities of the run";
+            require(self.takes(quantity), "quantity of the event", quantity, expected).of("until")?;
+        }
         self.validate_history(stage)?;
         let instants = Programme::new(vec![stage.clone()]).plan(&self.times, &[]).instants;
         self.validate_steps(stage, instants.iter())?;

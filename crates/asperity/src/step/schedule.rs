@@ -100,7 +100,7 @@ pub(crate) struct Schedule {
     remember: usize,
     /// The number of the stage under way, and the value that its quantity had when it began.
     stage: usize,
-    /// The stage under way, where it was prescribed between two rows: it lasts to the end of the run.
+    /// The stage under way, where it was prescribed between two rows.
     steered: Option<Stage>,
     started_from: f64,
     course: Course,
@@ -483,12 +483,16 @@ impl Schedule {
         }
     }
 
-    /// Begins a stage where the quantities have the values `reached`.
+    /// Begins a stage where the quantities have the values `reached`. After one that was prescribed between two rows they are held.
     fn enter(&mut self, stage: usize, time: f64, reached: Response) {
-        let end = self.simulation.times.end();
-        if self.is_steered() || stage >= self.simulation.loading.stages.len() || time >= end * (1.0 - SAME) {
+        let end = self.simulation.times.end() * (1.0 - SAME);
+        let is_last = !self.is_steered() && stage >= self.simulation.loading.stages.len();
+        if is_last || time >= end {
             self.stopped = Some(StopReason::Complete);
             return;
+        }
+        if let Some(steered) = &mut self.steered {
+            *steered = Stage::new(steered.control, crate::load::Course::Hold);
         }
         self.begin(stage, time, reached);
     }

@@ -6,6 +6,7 @@ use asperity::drive::March;
 use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
+use asperity::quantities::RowNumber;
 use asperity::simulation::{Scheme, Simulation};
 use asperity::step::{Checkpoint, Row};
 use asperity::surface::{Part, Shape, undeformed_gap};
@@ -231,7 +232,7 @@ fn steered(march: &mut March, plan: &[(usize, Control, Course)], mut see: impl F
         rows.push(row);
         let done = march.done();
         for (_, control, course) in plan.iter().filter(|(after, ..)| *after == done) {
-            march.prescribe(*control, course.clone()).unwrap();
+            march.prescribe(Stage::new(*control, course.clone())).unwrap();
         }
         see(march);
     }
@@ -296,7 +297,7 @@ fn what_is_prescribed_keeps_the_rules_of_stages() {
     };
     let mut march = March::new(simulation.clone()).unwrap();
     let told = |march: &mut March, control, course: Course| {
-        march.prescribe(control, course).unwrap_err().to_string()
+        march.prescribe(Stage::new(control, course)).unwrap_err().to_string()
     };
     let step = |value| Course::from(History::Step { value });
     assert!(told(&mut march, Control::Load, step(0.02)).contains("after the first row"));
@@ -326,13 +327,63 @@ fn what_is_prescribed_keeps_the_rules_of_stages() {
     for _ in 0..4 {
         march.advance().unwrap();
     }
-    march.prescribe(Control::Load, step(0.02)).unwrap();
+    march.prescribe(Stage::new(Control::Load, step(0.02))).unwrap();
     let Err(error) = march.advance() else { panic!("followed a jump") };
     assert!(error.to_string().contains("jump"), "{error}");
     let mut march = March::new(soft).unwrap();
     let rows =
         steered(&mut march, &[(5, Control::Load, Course::RampTo { value: 0.02, duration: 0.5 })], |_| ());
     assert!((rows.last().unwrap().load / 0.02 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_stage_prescribed_between_rows_ends_at_its_event_and_what_it_reached_is_held() {
+    let simulation = Simulation {
+        loading: load(History::Step { value: 0.01 }),
+        times: TimeGrid::Uniform { end: 4.0, steps: 4 },
+        ..sphere(16)
+    };
+    let mut march = March::new(simulation.clone()).unwrap();
+    march.advance().unwrap();
+    let row = march.advance().unwrap().unwrap().row();
+    // Drawn back within a fraction of a step of the run, until half of the approach is left.
+    let stage = Stage {
+        until: Some(Event::Approach(0.5 * row.approach)),
+        times: Some(TimeGrid::Uniform { end: 0.1, steps: 10 }),
+        duration: Some(0.1),
+        ..Stage::new(Control::Approach, Course::RampTo { value: 0.0, duration: 0.1 })
+    };
+    march.prescribe(stage).unwrap();
+    let mut rows = vec![];
+    let mut resumed = None;
+    while let Some(step) = march.advance().unwrap() {
+        rows.push(step.row());
+        if rows.len() == 3 {
+            resumed = Some(March::resume(simulation.clone(), &march.checkpoint()).unwrap());
+        }
+    }
+    let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
+    // Rows at each hundredth to the event at 1.05 s, then those of the run.
+    assert!(
+        times[..6].iter().zip([1.01, 1.02, 1.03, 1.04, 1.05, 2.0]).all(|(t, own)| (t - own).abs() < 1e-6),
+        "{times:?}"
+    );
+    assert_eq!(times.last(), Some(&4.0));
+    for held in &rows[4..] {
+        assert!((held.approach / row.approach - 0.5).abs() < 1e-9);
+    }
+    let mut rest = vec![];
+    let mut other = resumed.unwrap();
+    while let Some(step) = other.advance().unwrap() {
+        rest.push(step.row());
+    }
+    assert_eq!(format!("{rest:?}"), format!("{:?}", &rows[3..]));
+    // A quantity that the run does not compute cannot be waited for.
+    let mut march = March::new(simulation).unwrap();
+    march.advance().unwrap();
+    let energy = RowNumber::from_name("elastic_energy").unwrap();
+    let stage = Stage { until: Some(Event::Number(energy, 1.0)), ..Stage::new(Control::Load, Course::Hold) };
+    assert!(march.prescribe(stage).unwrap_err().to_string().contains("quantities"));
 }
 
 #[test]

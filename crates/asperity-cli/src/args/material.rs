@@ -139,7 +139,7 @@ pub struct Fit {
     /// Largest relative misfit (rms) before the data are refused, e.g. 0.2 or '20 %' [default: 0.1]
     #[arg(long, value_name = "SHARE", allow_hyphen_values = true, value_parser = quantity::<Number<range::Positive>>())]
     pub max_misfit: Option<Number<range::Positive>>,
-    /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
+    /// What comes after the data: whatever fits best (free), no flow (solid, of creep), or no modulus left (fluid)
     #[arg(long, value_parser = words::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Shift for data at several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'

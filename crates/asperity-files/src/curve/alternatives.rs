@@ -50,6 +50,14 @@ fn is_specific(table: &Table, column: usize, role: Role) -> bool {
     starts.iter().any(|start| name.starts_with(start))
 }
 
+/// Whether the name of a column is that of another one and says what was done to it.
+fn is_treated(table: &Table, column: usize, other: usize) -> bool {
+    const WORDS: [&str; 8] = ["corr", "korr", "raw", "roh", "smooth", "filter", "avg", "shifted"];
+    let [name, other] = [column, other].map(|column| role::bare(&table.headings[column].name));
+    let rest = other.strip_prefix(&name).or_else(|| other.strip_suffix(&name));
+    !name.is_empty() && rest.is_some_and(|rest| WORDS.iter().any(|word| rest.starts_with(word)))
+}
+
 /// Notes on columns that hold another time or temperature and are not read.
 ///
 /// # Errors
@@ -65,8 +73,10 @@ pub(super) fn agree(
         if *role == Role::Set || said.columns.contains_key(role) {
             continue;
         }
-        let is_other =
-            |other: &usize| means(table, *other, *role, form) && !places.values().any(|used| used == other);
+        let is_other = |other: &usize| {
+            (means(table, *other, *role, form) || is_treated(table, *column, *other))
+                && !places.values().any(|used| used == other)
+        };
         for other in (0..table.headings.len()).filter(is_other) {
             let Some((line, here, there)) = difference(table, *role, [*column, other], said) else {
                 continue;

@@ -133,7 +133,11 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
-            let remedy = if angular { Remedy::Radians } else { Remedy::Unit(role) };
+            let remedy = match (angular, unit.is_empty() || said.units.contains_key(&role)) {
+                (true, _) => Remedy::Radians,
+                (false, true) => Remedy::Unit(role),
+                (false, false) => Remedy::Convert(role),
+            };
             // Without a unit, or with that of a time, the column itself may be a wrong one.
             let columns = match unit.is_empty() || role == Role::Frequency {
                 true => format!("; the columns are {}", table.listed()),
@@ -141,6 +145,16 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
             };
             fault(format!("{} ({place}): {why}{columns}", role.name())).remedy(remedy).at(line)
         })?;
+        let own = &heading.unit;
+        if let Some(given) = said.units.get(&role)
+            && !own.is_empty()
+            && tidy(role, name, given) != tidy(role, name, own)
+        {
+            let name = role.name();
+            notes.push(format!(
+                "{name} ({place}) is taken in {given}, as you say, and not in {own}, as its header says"
+            ));
+        }
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
             notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
         }

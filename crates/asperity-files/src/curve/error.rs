@@ -36,6 +36,8 @@ pub enum Remedy {
     Moduli,
     /// Fit the part of a curve between these ends.
     Window(String, String),
+    /// Convert a column whose unit is not known here.
+    Convert(Role),
     /// Say the unit of an angular frequency.
     Radians,
     /// Say which column holds the loss modulus, or fit the storage modulus alone.
@@ -71,6 +73,17 @@ impl Remedy {
                     format!("say units={{\"{name}\": \"{unit}\"}}"),
                 ]
                 .map(|how| format!("name the unit in the header, as in \"{name} [{unit}]\", or {how}"))
+            }
+            Remedy::Convert(role) => {
+                let (name, unit) = (role.name(), role.example());
+                [
+                    format!("say units = {{ {name} = \"{unit}\" }}"),
+                    format!("give --unit '{name}={unit}'"),
+                    format!("say units={{\"{name}\": \"{unit}\"}}"),
+                ]
+                .map(|how| {
+                    format!("convert the column, to {unit} for one; only if its header is wrong and the numbers are in {unit}, {how}")
+                })
             }
             Remedy::Window(first, last) => [
                 format!("fit = {{ window = [\"{first}\", \"{last}\"] }}"),

@@ -9,7 +9,7 @@ use std::path::Path;
 use asperity::load::Stage;
 use asperity::surface::Part;
 use asperity::time::{Instant, Plan};
-use asperity::{Grid, Simulation};
+use asperity::{Control, Grid, Simulation};
 use ndarray::Array2;
 use toml::Table;
 

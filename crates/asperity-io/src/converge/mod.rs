@@ -220,13 +220,22 @@ pub fn converge(
     Ok(Convergence { answers, bars, rows: at.len(), last, findings, notes, cost })
 }
 
-/// Answers that have no value on ever finer grids where the pressure is singular, by how their names begin.
-const OF_LARGEST_PRESSURE: [&str; 3] = ["max_pressure", "max_mises", "first_yield"];
+/// Answers that have no value on ever finer grids where the pressure is singular, by how their names begin: the depth worn follows the
+/// pressure of its cell.
+const OF_LARGEST_PRESSURE: [&str; 5] =
+    ["max_pressure", "max_mises", "first_yield", "wear_depth", "wear_life"];
+/// What wears where the pressure is above a threshold follows the largest pressures too.
+const ABOVE_THRESHOLD: &str = "wear_";
 
 impl Solved {
     /// Why an answer has no value on ever finer grids; `None` where nothing is known to say so.
     fn why_singular(&self, case: &Case, answer: &Answer) -> Option<&'static str> {
-        let is_largest = OF_LARGEST_PRESSURE.iter().any(|begin| answer.name.starts_with(begin));
+        let is_above = case.conditions.wear.as_ref().is_some_and(|wear| wear.threshold > 0.0)
+            && answer.name.starts_with(ABOVE_THRESHOLD);
+        if is_above && answer.value == 0.0 {
+            return Some("no pressure reaches the threshold on this grid, but on a finer one it may");
+        }
+        let is_largest = is_above || OF_LARGEST_PRESSURE.iter().any(|begin| answer.name.starts_with(begin));
         // The largest pressure is the hardness where cells have reached it.
         if !is_largest || self.is_capped(answer) {
             return None;

@@ -163,6 +163,16 @@ impl Solved<'_> {
     pub(crate) fn gap(&self) -> &[f64] {
         self.undeformed.or(self.own_gap)
     }
+
+    /// What the contact carries in the row before and in this one \[N\]: the loads, where nothing else carries or pulls.
+    pub(crate) fn contact_loads(&self) -> [f64; 2] {
+        let area = self.simulation.grid.cell_area();
+        match self.simulation.traction {
+            None => self.loads,
+            Some(_) => [self.contact_before, self.contact]
+                .map(|contact| area * asperity_sweep::sum(&contact.pressure)),
+        }
+    }
 }
 
 /// The processes that a simulation asks for, in the order in which they take in a row.

@@ -245,8 +245,8 @@ impl Process for Wearing {
         numbers.counterbody += volume * self.law.shares()[1];
         numbers.uncertain = damping * (numbers.uncertain + uncertain);
         let distance = self.law.distance(&self.simulation, row.step.start, row.step.instant.time);
-        // The load is that at the end of the step.
-        let [before, now] = row.loads;
+        // The load is that at the end of the step, of the contact alone.
+        let [before, now] = row.contact_loads();
         let per_load = if now > 0.0 { volume / now } else { self.law.total() * distance };
         numbers.of_load += 0.5 * per_load * (now - before).abs() + of_cycles;
         numbers.rate = if length > 0.0 { volume / length } else { 0.0 };

@@ -245,6 +245,11 @@ impl TractionSolver {
         let solved = match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem),
             Prescribed::Load(load) => match run.solve_under(problem, load) {
+                // More than the hardness carries.
+                Err(Error::Infeasible { load, max, parameter }) if load > max => {
+                    self.now.copy_from(&self.last);
+                    return Err(Error::Infeasible { load, max, parameter });
+                }
                 Err(Error::Infeasible { .. }) if run.own.law.is_attraction() => {
                     let unit = run.operator.grid().units("N");
                     self.now.copy_from(&self.last);

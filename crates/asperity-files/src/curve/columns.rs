@@ -133,7 +133,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
             let line = row.map(|row| table.rows[kept[row]].line);
             let angular = role == Role::Frequency && unit.is_empty() && is_angular(name);
-            let remedy = match (angular, unit.is_empty() || said.units.contains_key(&role)) {
+            // Of 1/s it is only open whether cycles or radians are counted.
+            let is_open = unit.is_empty() || matches!(unit.as_str(), "1/s" | "s^-1" | "s-1");
+            let remedy = match (angular, is_open || said.units.contains_key(&role)) {
                 (true, _) => Remedy::Radians,
                 (false, true) => Remedy::Unit(role),
                 (false, false) => Remedy::Convert(role),

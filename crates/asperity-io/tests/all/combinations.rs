@@ -155,7 +155,7 @@ impl Chosen {
             let steps = if self.has("steps") { self.get("steps") } else { "steps = 5" };
             let _ = write!(text, "[time]\nend = '10 s'\n{steps}\n");
             if self.has("scheme") {
-                let _ = write!(text, "scheme = '{}'\n", self.get("scheme"));
+                let _ = writeln!(text, "scheme = '{}'", self.get("scheme"));
             }
         }
         text += "[solver]\ntolerance = 1e-4\n";
@@ -200,7 +200,7 @@ impl Chosen {
                 _ => "[leakage]\ndirection = 'x'\ngas = 'air'\ninlet = '1.01 bar'\noutlet = '1 bar'\n",
             };
             if self.has("coupling") {
-                let _ = write!(text, "coupling = '{}'\n", self.get("coupling"));
+                let _ = writeln!(text, "coupling = '{}'", self.get("coupling"));
             }
         }
         if self.has("stress") {

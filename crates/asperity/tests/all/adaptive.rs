@@ -381,8 +381,9 @@ fn a_stage_prescribed_between_rows_ends_at_its_event_and_what_it_reached_is_held
     // A quantity that the run does not compute cannot be waited for.
     let mut march = March::new(simulation).unwrap();
     march.advance().unwrap();
-    let energy = RowNumber::from_name("elastic_energy").unwrap();
-    let stage = Stage { until: Some(Event::Number(energy, 1.0)), ..Stage::new(Control::Load, Course::Hold) };
+    let stiffness = RowNumber::from_name("contact_stiffness").unwrap();
+    let stage =
+        Stage { until: Some(Event::Number(stiffness, 1.0)), ..Stage::new(Control::Load, Course::Hold) };
     assert!(march.prescribe(stage).unwrap_err().to_string().contains("quantities"));
 }
 

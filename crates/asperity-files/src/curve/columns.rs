@@ -150,6 +150,7 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         let own = &heading.unit;
         if let Some(given) = said.units.get(&role)
             && !own.is_empty()
+            && base.is_none()
             && tidy(role, name, given) != tidy(role, name, own)
         {
             let name = role.name();

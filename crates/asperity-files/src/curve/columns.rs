@@ -171,15 +171,17 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
         && storage.named != loss.named
     {
         let (bare, other) = if storage.named { (loss, storage) } else { (storage, loss) };
-        let quoted = table.quoted(bare.column - 1);
-        return Err(fault(format!(
-            "{} (column {}{quoted}) names no unit, and {} is in {}: taken in Pa it may be wrong by powers of ten",
-            bare.role.name(),
-            bare.column,
-            other.role.name(),
-            other.unit
-        ))
-        .remedy(Remedy::Unit(bare.role)));
+        if other.unit != taken(bare.role) {
+            let quoted = table.quoted(bare.column - 1);
+            return Err(fault(format!(
+                "{} (column {}{quoted}) names no unit, and {} is in {}: taken in Pa it may be wrong by powers of ten",
+                bare.role.name(),
+                bare.column,
+                other.role.name(),
+                other.unit
+            ))
+            .remedy(Remedy::Unit(bare.role)));
+        }
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })

@@ -293,8 +293,8 @@ fn no_starter_case_causes_a_finding() {
     const CELLS: usize = 48;
     let folder = tempfile::tempdir().unwrap();
     for template in asperity_examples::TEMPLATES {
-        // Hundreds of cycles of wear take a minute on any grid.
-        if template.name == "fretting-wear" {
+        // Hundreds of cycles of wear, and hundreds of steps on the cells that the range needs, take a minute.
+        if ["fretting-wear", "gel-adhesion"].contains(&template.name) {
             continue;
         }
         let path = format!("{}.toml", template.name);

@@ -265,7 +265,10 @@ fn logarithms_other_symbols_and_other_units_are_the_same_moduli() {
             Some(Modulus::Shear),
         ),
         (table("f_Hz,E1_MPa,E2_MPa", |f, s, l| format!("{f},{},{}", mega(s), mega(l))), Some(Modulus::Young)),
-        (table("f [Hz],Re(E*),Im(E*) [psi]", |f, s, l| format!("{f},{s},{}", psi(l))), Some(Modulus::Young)),
+        (
+            table("f [Hz],Re(E*) [Pa],Im(E*) [psi]", |f, s, l| format!("{f},{s},{}", psi(l))),
+            Some(Modulus::Young),
+        ),
         (
             table("f [Hz],|G*| [ksi],delta (°)", |f, s, l| {
                 format!("{f},{},{}", 1e-3 * psi(s.hypot(l)), l.atan2(s).to_degrees())

@@ -304,6 +304,6 @@ fn a_seal_names_the_findings_of_its_patch_and_where_its_curve_is_coarse() {
     assert_eq!(codes.contains(&"seal-curve-coarse"), !points.is_empty(), "{codes:?} {points:?}");
     assert!(points.iter().all(|point| point["see"].to_string().contains("seal-curve-coarse")), "{points:?}");
     assert_eq!(told.contains("At inlet pressures of"), !points.is_empty(), "{told}");
-    // Runs are told by pressure and seed, with prefixes.
-    assert!(told.contains("run 1, patch at 1 kPa, seed 1: "), "{told}");
+    // Runs are told by pressure and seed, with prefixes, in the order in which they end.
+    assert!(told.contains(", patch at 1 kPa, seed 1: ") && told.contains("\nrun 1, patch at "), "{told}");
 }

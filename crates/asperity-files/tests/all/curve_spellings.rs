@@ -273,6 +273,8 @@ fn names_with_underscores_symbols_and_angles_are_understood() {
     }
     for (header, measure) in [
         ("Time, t [s];Relaxation Modulus, E [MPa]", Modulus::Young),
+        ("Time [s];Modulus G(t) [MPa]", Modulus::Shear),
+        ("Time [s];Modulus E(t) [MPa]", Modulus::Young),
         ("Time t [s];Relaxation modulus (G) [MPa]", Modulus::Shear),
         ("Zeit [s];Relaxationsmodul E(t) [MPa]", Modulus::Young),
     ] {

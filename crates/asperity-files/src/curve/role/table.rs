@@ -54,12 +54,13 @@ roles! {
     /// Relaxation modulus.
     Modulus "modulus" ["Pa", "MPa"]
         "modulus e g et gt er gr erelax grelax erel grel relaxationmodulus relaxationmoduluset relaxationmodulusgt
-         stressrelaxationmodulus shearmodulus shearrelaxationmodulus tensilemodulus tensilerelaxationmodulus
+         moduluset modulusgt shearmodulusgt stressrelaxationmodulus shearmodulus shearrelaxationmodulus tensilemodulus tensilerelaxationmodulus
          youngsmodulus young'smodulus emodulus gmodulus modul emodul gmodul relaxationsmodul relaxationsmodulet
          relaxationsmodulgt schubmodul zugmodul elastizitätsmodul";
     /// Creep compliance.
     Compliance "compliance" ["1/Pa", "1/MPa"]
-        "compliance d j dt jt dcreep jcreep creepcompliance creepcompliancejt creepcompliancedt shearcompliance
+        "compliance d j dt jt dcreep jcreep creepcompliance creepcompliancejt creepcompliancedt
+         compliancejt compliancedt shearcompliance
          tensilecompliance shearcreepcompliance tensilecreepcompliance nachgiebigkeit kriechnachgiebigkeit
          kriechnachgiebigkeitjt kriechnachgiebigkeitdt komplianz kriechkomplianz";
     /// Frequency, in Hz or rad/s.

@@ -51,18 +51,21 @@ fn files() -> tempfile::TempDir {
     folder
 }
 
+/// Purposes with the files of [`files`] that a case is made of.
+const OWN: [(&str, &str, &str); 7] = [
+    ("seal", "face.npz", "relaxation.csv"),
+    ("friction", "face.npz", "dma.csv"),
+    ("contact", "face.npz", "dma.csv"),
+    ("indentation", "face.npz", "relaxation.csv"),
+    ("indentation", "record.csv", "relaxation.csv"),
+    ("adhesion", "face.npz", "relaxation.csv"),
+    ("adhesion", "record.csv", "dma.csv"),
+];
+
 #[test]
 fn a_case_with_own_files_passes_the_check_and_says_what_is_missing() {
     let folder = files();
-    for (purpose, from, material) in [
-        ("seal", "face.npz", "relaxation.csv"),
-        ("friction", "face.npz", "dma.csv"),
-        ("contact", "face.npz", "dma.csv"),
-        ("indentation", "face.npz", "relaxation.csv"),
-        ("indentation", "record.csv", "relaxation.csv"),
-        ("adhesion", "face.npz", "relaxation.csv"),
-        ("adhesion", "record.csv", "dma.csv"),
-    ] {
+    for (purpose, from, material) in OWN {
         let words = ["new", "--from", from, "--material", material, "--for", purpose, "own.toml", "--force"];
         let made = asperity(folder.path(), &words);
         assert!(made.status.success() && told(&made).contains("body.poisson"), "{purpose}: {}", told(&made));
@@ -264,18 +267,9 @@ fn no_default_of_a_case_with_own_files_causes_a_finding() {
         &["surface", "process", "face.npz", "--op", "crop cells=18,12", "-o", "part.npz"],
     );
     assert!(made.status.success(), "{}", told(&made));
-    for (purpose, from, material) in [
-        ("seal", "face.npz", "relaxation.csv"),
-        ("seal", "part.npz", "relaxation.csv"),
-        ("friction", "face.npz", "dma.csv"),
-        ("friction", "part.npz", "dma.csv"),
-        ("contact", "face.npz", "dma.csv"),
-        ("contact", "part.npz", "relaxation.csv"),
-        ("indentation", "face.npz", "relaxation.csv"),
-        ("indentation", "record.csv", "relaxation.csv"),
-        ("adhesion", "face.npz", "relaxation.csv"),
-        ("adhesion", "record.csv", "dma.csv"),
-    ] {
+    let parts = [("seal", "relaxation.csv"), ("friction", "dma.csv"), ("contact", "relaxation.csv")];
+    let parts = parts.map(|(purpose, material)| (purpose, "part.npz", material));
+    for (purpose, from, material) in OWN.into_iter().chain(parts) {
         let words = ["new", "--from", from, "--material", material, "--for", purpose, "own.toml", "--force"];
         let made = asperity(folder.path(), &words);
         assert!(made.status.success(), "{purpose}: {}", told(&made));

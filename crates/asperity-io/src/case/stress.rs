@@ -107,14 +107,13 @@ impl Stress {
         let plan = self.plan(at, grid, &bodies)?;
         let times = stored_times(&at.key("times"), self.times.as_ref(), output, end)?;
         if let Ratio::Changing(_) = plan.poisson {
-            let place = if self.body.is_some() { at.key("body") } else { at.clone() };
-            let because = format!(
-                "{} has a constant bulk modulus, so that its Poisson's ratio changes with time",
-                plan.body
-            );
             if moves {
-                let message =
-                    format!("{because}; the stress of a contact that moves over such a body is not computed");
+                let place = if self.body.is_some() { at.key("body") } else { at.clone() };
+                let message = format!(
+                    "{} has a constant bulk modulus, so that its Poisson's ratio changes with time; the stress of a contact that \
+                     moves over such a body is not computed",
+                    plan.body
+                );
                 let help = "give the body a constant `poisson`, or choose the other body";
                 return place.fault(message, "a body of constant Poisson's ratio", help);
             }

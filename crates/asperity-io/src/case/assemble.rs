@@ -108,10 +108,6 @@ impl Document {
         }
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
         let motion = motion.and_then(|motion| warmed(checks, motion, &parts, points));
-        if self.motion.is_some() && self.adhesion.is_some() {
-            let help = "delete one of the two sections";
-            at("motion").fault::<()>("surfaces that slide do not adhere here", "no [adhesion]", help);
-        }
         let acts = self.leakage.as_ref().is_some_and(|leakage| leakage.acts());
         if self.motion.is_some() && acts {
             let help = "set leakage.coupling = \"one-way\", or delete [motion]";

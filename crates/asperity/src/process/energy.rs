@@ -84,7 +84,7 @@ impl Process for Energy {
             self.unknown += match jump {
                 true if row.step.instant.time == 0.0 => 0.0,
                 true => (row.potential - self.potential).abs(),
-                false => self.of_course(row),
+                false => self.of_course(row) + row.unknown_work,
             };
             self.slope = if jump { 0.0 } else { self.slope };
         }

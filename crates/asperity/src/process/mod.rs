@@ -150,6 +150,8 @@ pub(crate) struct Solved<'a> {
     pub(crate) exchange: Option<Exchange>,
     /// Work that was done on the bodies in the step besides that of the load \[J\].
     pub(crate) other_work: f64,
+    /// What is not known of it \[J\].
+    pub(crate) unknown_work: f64,
     /// Work of the load in the step that went into what has worn \[J\].
     pub(crate) worn_work: f64,
     /// How far each cell has slipped in the step \[m\], where wear asks for it.

@@ -186,6 +186,7 @@ impl Moving {
             direction: self.motion.direction,
             slopes: worn.as_ref().unwrap_or(&self.slopes),
             state: row.now,
+            contact: &row.contact.pressure,
             gap: row.gap(),
             compliance: row.compliance,
             remembers: row.simulation.parts().any(Creep::remembers),
@@ -198,8 +199,14 @@ impl Moving {
     }
 
     /// Finds how warm the surfaces are after as long a time at the velocity of the row as they need.
-    fn warm(&mut self, row: &Solved<'_>, Friction { velocity, coefficient, .. }: Friction) -> Result<()> {
+    fn warm(&mut self, row: &Solved<'_>, friction: Friction) -> Result<()> {
         let Some(flash) = &mut self.flash else { return Ok(()) };
+        let velocity = friction.velocity;
+        // All the heat arises under the contact pressure.
+        let coefficient = match row.simulation.traction {
+            None => friction.coefficient,
+            Some(_) => friction.force / row.contact_loads()[1].max(f64::MIN_POSITIVE),
+        };
         flash.warm(Rubbing {
             velocity,
             pressure: &row.contact.pressure,
@@ -246,7 +253,12 @@ impl Process for Moving {
         let friction = self.forces(row, time_error.max(self.time_error), |error| swing.see(way, cell, error));
         self.swing = swing;
         let before = std::mem::replace(&mut self.before, self.distance);
-        row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
+        let way = self.distance - before;
+        row.other_work += 0.5 * (self.friction.force + friction.force) * way;
+        if row.simulation.traction.is_some() {
+            // Where in the step surfaces that adhere have jumped is not known.
+            row.unknown_work += 0.5 * ((friction.force - self.friction.force) * way).abs();
+        }
         (self.friction, self.time_error) = (friction, time_error);
     }
 

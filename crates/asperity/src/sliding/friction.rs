@@ -93,7 +93,7 @@ pub struct Friction {
     pub force: f64,
     /// Force across it, Σ p dh/dn \[N\]; n is s turned by a right angle from x towards y.
     pub side: f64,
-    /// Force over load.
+    /// Force over load; NaN where the surfaces hold together without a load.
     pub coefficient: f64,
     /// Estimated error over |force|, from other estimates of it, and in time from the error of the stress.
     pub uncertainty: f64,
@@ -146,6 +146,8 @@ pub(crate) struct ContactForces<'a> {
     /// Of the undeformed gap of what moves.
     pub(crate) slopes: &'a Slopes,
     pub(crate) state: &'a ContactState,
+    /// The contact pressure \[Pa\]: that of the state, less the attraction of surfaces that adhere.
+    pub(crate) contact: &'a [f64],
     /// Undeformed gap and displacement c U; a constant does not count.
     pub(crate) gap: &'a [f64],
     pub(crate) compliance: f64,
@@ -197,40 +199,47 @@ impl Friction {
     }
 
     fn new(contact: &ContactForces, sums: &Sums, [force, unknown]: [f64; 2], power: f64) -> Friction {
-        let load = sums.load;
-        let coefficient = if load > 0.0 { force / load } else { 0.0 };
+        let over_load = |force: f64| match sums.load {
+            load if load > 0.0 => force / load,
+            _ if sums.strain == 0.0 => 0.0,
+            _ => f64::NAN,
+        };
         Friction {
             velocity: contact.velocity,
             distance: contact.distance,
             force,
             side: if contact.remembers { sums.side } else { 0.0 },
-            coefficient,
-            uncertainty: if force.abs() > ROUNDING * load { unknown / force.abs() } else { 0.0 },
+            coefficient: over_load(force),
+            uncertainty: if force.abs() > ROUNDING * sums.strain { unknown / force.abs() } else { 0.0 },
             moment: sums.moment,
             power,
-            total: contact.rubbing(sums).map_or(f64::NAN, |own| coefficient + own),
+            total: contact.rubbing(sums).map_or(f64::NAN, |own| over_load(force) + over_load(own)),
         }
     }
 }
 
-/// Forces below this share of the load are rounding errors.
+/// Forces below this share of all that presses and pulls are rounding errors.
 const ROUNDING: f64 = 1e-13;
 
-/// Sums over the cells in contact, times the area of a cell; s is the direction of motion, n across it, D a central difference.
+/// Sums over the cells that press or pull, times the area of a cell; s is the direction of motion, n across it, D a central difference.
 struct Sums {
     /// Σ p.
     load: f64,
+    /// Σ |p|.
+    strain: f64,
     /// Σ p dh/ds, h of what moves.
     slopes: f64,
     /// Σ p dh/dn.
     side: f64,
     /// Σ p s.
     moment: f64,
-    /// Σ 1.
+    /// Σ q, and Σ 1 over the cells in contact.
+    contact: f64,
     area: f64,
-    /// Σ p |dh/ds|.
+    /// Σ |p dh/ds|.
     size: f64,
-    /// Σ p Dg, g the gap of the deformed bodies: 0 in contact, so this comes from the edges alone.
+    /// Σ p Dg, g the gap of the deformed bodies: 0 in contact, so this comes from the edges alone. An attraction that depends on the gap
+    /// adds nothing but what the cells leave open either.
     edges: f64,
     /// Σ p (dh/ds - Dh), to leading order.
     waves: f64,
@@ -239,17 +248,14 @@ struct Sums {
 }
 
 impl ContactForces<'_> {
-    /// The friction coefficient of the surfaces themselves, with the sign of the velocity; `None` where they have none.
+    /// The force of the friction of the surfaces themselves \[N\], with the sign of the velocity; `None` where they have none.
     fn rubbing(&self, sums: &Sums) -> Option<f64> {
         let coefficient = self.simulation.flash.as_ref().map_or(0.0, |flash| flash.friction);
         if self.shear_stress.is_none() && coefficient == 0.0 {
             return None;
         }
-        if sums.load <= 0.0 {
-            return Some(0.0);
-        }
         let stress = self.shear_stress.unwrap_or(0.0);
-        Some(self.sense * (coefficient + stress * sums.area / sums.load))
+        Some(self.sense * (coefficient * sums.contact + stress * sums.area))
     }
 
     fn sums(&self) -> Sums {
@@ -263,22 +269,24 @@ impl ContactForces<'_> {
         let displacement = |cell: usize| self.compliance * self.state.unit_displacement[cell];
         let of_cell = |cell: usize| {
             let p = self.state.pressure[cell];
-            if p <= 0.0 {
-                return [0.0; 9];
+            if p == 0.0 {
+                return [0.0; 11];
             }
+            let q = self.contact[cell];
             let (i, j) = (cell / ny, cell % ny);
             let (sx, sy) = (self.slopes.x[(i, j)], self.slopes.y[(i, j)]);
             let (along, across) = (cx * sx + cy * sy, cx * sy - cy * sx);
             let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
             let edge = self.difference((i, j), |cell| self.gap[cell] + displacement(cell));
             let back = -self.difference((i, j), displacement);
-            let of_force = [along, across, arm, along.abs(), edge, self.missed((i, j)), back];
-            let [slopes, side, moment, size, edges, waves, differences] = of_force.map(|x| p * x);
-            [p, slopes, side, moment, 1.0, size, edges, waves, differences]
+            let of_force = [along, across, arm, edge, self.missed((i, j)), back];
+            let [slopes, side, moment, edges, waves, differences] = of_force.map(|x| p * x);
+            let (size, touches) = (slopes.abs(), f64::from(u8::from(q > 0.0)));
+            [p, p.abs(), slopes, side, moment, q, touches, size, edges, waves, differences]
         };
         let all = sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum);
-        let [load, slopes, side, moment, area, size, edges, waves, differences] = all;
-        Sums { load, slopes, side, moment, area, size, edges, waves, differences }
+        let [load, strain, slopes, side, moment, contact, area, size, edges, waves, differences] = all;
+        Sums { load, strain, slopes, side, moment, contact, area, size, edges, waves, differences }
     }
 
     /// The cells before and behind a cell along both axes; at the ends of a free domain the cell itself.

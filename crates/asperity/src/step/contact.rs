@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, Start, Task};
 use crate::error::Result;
+use crate::grid::Boundary;
 use crate::operator::Operator;
 use crate::simulation::Simulation;
 use crate::time::Instant;
@@ -82,6 +83,11 @@ impl StepContact {
         self.operator.apply_into(&known.pressure, &mut known.unit_displacement);
         known.rounding = 1.0;
         1
+    }
+
+    /// The contact has moved by these cells along x and y since the last row.
+    pub(super) fn follow(&mut self, shift: [isize; 2], boundary: Boundary) {
+        self.traction.iter_mut().for_each(|traction| traction.follow(shift, boundary));
     }
 
     /// The instant that is solved for.

@@ -309,6 +309,7 @@ fn solved<'a>(
         time_error: None,
         exchange: None,
         other_work: 0.0,
+        unknown_work: 0.0,
         worn_work: 0.0,
         slipped: vec![],
         convolutions: 0,

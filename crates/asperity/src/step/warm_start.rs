@@ -145,6 +145,7 @@ impl Stepper {
     pub(super) fn guess(&mut self, step: &Interval, prescribed: Prescribed) -> Start {
         if self.contact.pulls() {
             // The traction keeps its own start.
+            self.contact.follow(self.shift(step).unwrap_or_default(), self.simulation.boundary);
             self.state.now.approach = self.state.before.approach;
             return Start::Pressure;
         }

@@ -198,10 +198,6 @@ impl TractionLaw for Adhesion {
 
     fn check(&self, simulation: &Simulation) -> Result<()> {
         self.validate().of("adhesion")?;
-        if simulation.motion.is_some() {
-            let expected = "none: adhesion acts between surfaces that do not slide";
-            return Err(Error::invalid("motion of an adhesive contact", "given", expected).of("motion"));
-        }
         let [hardness, _] = simulation.hardness_range();
         if self.work > 0.0 && hardness <= self.strength() {
             let expected = format!(

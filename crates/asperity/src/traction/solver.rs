@@ -8,8 +8,9 @@ use crate::contact::{
 };
 use crate::error::{Error, Result};
 use crate::extrapolation::Extrapolation;
-use crate::grid::Grid;
+use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
+use crate::process::roll;
 use crate::quantities::Quantity;
 use crate::step::{Loader, Saver, saved};
 use crate::time::Instant;
@@ -31,6 +32,8 @@ pub(crate) struct TractionSolver {
     /// The traction b and the contact pressure q of the last row, with which each attempt begins.
     last: Tractions,
     now: Tractions,
+    /// Cells along x and y that the contact has moved since the last row, and the boundary that it moves over.
+    moved: ([isize; 2], Boundary),
     /// K b, and B of the pass.
     image: Vec<f64>,
     next: Vec<f64>,
@@ -70,6 +73,19 @@ impl Tractions {
         self.bound.copy_from_slice(&other.bound);
         self.contact.copy_from(&other.contact);
     }
+
+    /// Those of another place, moved by these cells.
+    fn move_from(&mut self, other: &Self, (shift, boundary): ([isize; 2], Boundary), grid: &Grid) {
+        if shift == [0; 2] {
+            return self.copy_from(other);
+        }
+        let move_field = |from: &[f64], to: &mut [f64]| roll(grid.shape(), boundary, shift, from, to);
+        move_field(&other.bound, &mut self.bound);
+        move_field(&other.contact.pressure, &mut self.contact.pressure);
+        move_field(&other.contact.unit_displacement, &mut self.contact.unit_displacement);
+        self.contact.approach = other.contact.approach;
+        self.contact.rounding = other.contact.rounding + 1.0;
+    }
 }
 
 saved! {
@@ -105,6 +121,7 @@ impl TractionSolver {
             tolerances: law.tolerances(contact).map(|tolerance| tolerance.max(1e-14)),
             last: Tractions::none(cells),
             now: Tractions::none(cells),
+            moved: ([0; 2], Boundary::Free),
             image: zeros(cells),
             next: zeros(cells),
             shifted: zeros(cells),
@@ -148,6 +165,11 @@ impl TractionSolver {
     /// The instant that is solved for.
     pub(crate) fn begin(&mut self, at: &Instant) {
         self.law.begin(at);
+    }
+
+    /// The contact has moved by these cells along x and y since the last row.
+    pub(crate) fn follow(&mut self, shift: [isize; 2], boundary: Boundary) {
+        self.moved = (shift, boundary);
     }
 
     /// The step stands.
@@ -233,7 +255,7 @@ impl TractionSolver {
         task: Task,
     ) -> Result<Outcome> {
         let Task { operator, problem, options, state, interrupt } = task;
-        self.now.copy_from(&self.last);
+        self.now.move_from(&self.last, self.moved, operator.grid());
         self.passes = 0;
         let rise = match problem.prescribed {
             Prescribed::Load(load) => load / operator.grid().area() - self.mean_of_last(),

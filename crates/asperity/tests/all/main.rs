@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod adhesion;
+mod adhesion_in_motion;
 mod beside_tractions;
 mod capped;
 mod conditions;

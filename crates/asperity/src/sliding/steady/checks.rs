@@ -38,6 +38,12 @@ impl SteadyMotion {
             "a half-space, or boundary = \"periodic\"",
         )?;
         require(
+            simulation.traction.is_none(),
+            "body of a steady state of motion",
+            "one that adheres or that a fluid acts on",
+            "one without: take a motion in time",
+        )?;
+        require(
             simulation.hardness_map.is_none(),
             "hardness of a steady state of motion",
             "different from cell to cell",

@@ -245,6 +245,7 @@ impl Steady {
             direction: self.motion.direction,
             slopes: &self.motion.slopes,
             state: &self.state,
+            contact: &self.state.pressure,
             gap: problem.gap,
             compliance: problem.compliance,
             remembers: self.streaming.branches().next().is_some(),

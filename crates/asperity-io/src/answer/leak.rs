@@ -1,9 +1,10 @@
 //! The leak of a seal, and from when on it is tight.
 
+use asperity::Axis;
 use asperity::quantities::Quantity;
 
 use super::{Answer, Units};
-use crate::leakage::{LeakHistory, words};
+use crate::leakage::LeakHistory;
 use crate::store::{Reader, Result};
 
 /// The spread of the last leak over the passes of the solver, relative, where cells without a steady access to the fluid are held.
@@ -20,8 +21,16 @@ fn spread(reader: &Reader, leaks: &LeakHistory) -> Result<f64> {
 pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     let Some(leaks) = LeakHistory::of(reader)? else { return Ok(vec![]) };
     let times = leaks.column("leak_time");
+    let is_sweep = leaks.table.axis == Axis::Velocity;
     let percolates = leaks.column("percolates");
-    let note = leaks.note(units);
+    let note = match is_sweep {
+        true => format!(
+            "at {}; {}",
+            units.moment(leaks.table.axis.at(leaks.last("leak_time"))),
+            leaks.note(units)
+        ),
+        false => leaks.note(units),
+    };
     let mut answers: Vec<Answer> = leaks
         .table
         .series()
@@ -42,8 +51,8 @@ pub(super) fn of(reader: &Reader, units: &Units) -> Result<Vec<Answer>> {
     answers.iter_mut().take(noted).for_each(|answer| answer.note.clone_from(&note));
     let open = percolates.iter().rposition(|open| *open != 0.0);
     let first = open.map_or(0, |open| open + 1);
-    if let Some(tight) = times.get(first) {
-        let between = words::tight(times, percolates, units);
+    if let Some(tight) = times.get(first).filter(|_| !is_sweep) {
+        let between = leaks.tight(units);
         // Between the last time at which it leaks and the next one nothing is known.
         let distance = open.map_or(0.0, |open| tight - times[open]);
         let answer = Answer::new("tight_from", *tight, "s").with_note(between);

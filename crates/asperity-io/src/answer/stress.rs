@@ -1,5 +1,7 @@
 //! The largest stress below the surface, and the load at which the body yields.
 
+use asperity::Axis;
+
 use super::Answer;
 use super::extreme::Course;
 use crate::readable::quantity;
@@ -19,7 +21,7 @@ pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
     let at = rows.get(worst.row).map(|row| row.coordinate);
     let when = at
         .map_or(String::new(), |at| format!(", at {}", quantity(at.value(), reader.header().axis().unit())));
-    let note = format!("of {}, the largest of all computed times{when}", below.set.body);
+    let note = format!("of {}, the largest of all computed {}{when}", below.set.body, below.axis.plural());
     let mut answers: Vec<Answer> =
         [number("max_mises", "Pa").of_rows(open).with_note(note), number("max_mises_depth", "m")]
             .map(|answer| Answer { at, ..answer })
@@ -34,7 +36,10 @@ pub(super) fn of(reader: &Reader) -> Result<Vec<Answer>> {
             FirstYield::Between([[_, before], [_, load]]) => (load - before).abs(),
             _ => 0.0,
         };
-        answers.push(answer.of_rows(open).with_note(first.sentence(&below.set)));
+        // Over velocities the load is the same.
+        if below.axis == Axis::Time {
+            answers.push(answer.of_rows(open).with_note(first.sentence(&below)));
+        }
     }
     Ok(answers)
 }

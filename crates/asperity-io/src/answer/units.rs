@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use asperity::drive::Coordinate;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -260,6 +261,19 @@ impl Units {
             Some(Shown { factor, text }) => format!("{} {text}", quantity(seconds * factor, "")),
             None => quantity(seconds, "s"),
         }
+    }
+
+    /// Time or velocity of a row in its unit.
+    pub fn coordinate(&self, of: Coordinate) -> String {
+        match of {
+            Coordinate::Time(seconds) => self.time(seconds),
+            other => quantity(other.value(), other.axis().unit()),
+        }
+    }
+
+    /// "t = 10 s", or "v = 1 mm/s" of a steady state.
+    pub fn moment(&self, of: Coordinate) -> String {
+        format!("{} = {}", of.axis().symbol(), self.coordinate(of))
     }
 
     /// The unit chosen for `name`, per SI value; `None` where none is chosen.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use asperity::finding;
 use asperity::flash::Flash;
 use asperity::load::Course;
+use asperity::simulation::Plasticity;
 use asperity::sliding::ShearStress;
 use asperity::tangential::Tangential;
 use asperity::time::Plan;
@@ -109,10 +110,11 @@ impl Document {
         let motion = self.motion.as_ref().and_then(|motion| motion.moving(&at("motion"), &self.surface));
         let motion = motion.and_then(|motion| warmed(checks, motion, &parts, points));
         let acts = self.leakage.as_ref().is_some_and(|leakage| leakage.acts());
-        if self.motion.is_some() && acts {
-            let help = "set leakage.coupling = \"one-way\", or delete [motion]";
+        let flows = self.leakage.as_ref().is_some_and(|leakage| leakage.flows_with_the_contact());
+        if self.motion.is_some() && flows {
+            let help = "set leakage.coupling = \"one-way\" or \"uniform\", or delete [motion]";
             let message = "the flow that a sliding surface drags along is not solved";
-            at("motion").fault::<()>(message, "no fluid that acts on the surfaces", help);
+            at("motion").fault::<()>(message, "no fluid whose flow acts on the surfaces", help);
         }
         let swept = motion.as_ref().and_then(Motion::swept);
         let times = match (&motion, &grid, &self.time) {
@@ -126,8 +128,7 @@ impl Document {
         };
         if swept.is_some() {
             let why = "belongs to a motion in time, but the case asks for steady states";
-            let sections = ["time", "stress", "leakage"];
-            checks.root().without(&sections, why, "[motion.steady] alone", "leave the section out");
+            checks.root().without(&["time"], why, "[motion.steady] alone", "leave the section out");
             let help = "store the fields of every n-th velocity by `every`";
             at("output").without(&["times"], why, "`every`", help);
         }
@@ -167,7 +168,11 @@ impl Document {
             let end = times.as_ref().map_or(f64::INFINITY, TimeGrid::end);
             section.met(&at("motion"), motion, &self.body, pair, end);
             if let Some(grid) = &grid {
-                let found = motion.findings(&self.surface, grid, boundary, pair, self.flash.is_some());
+                let found = {
+                    // The heat of friction has a friction of its own, dents that stay are ploughed.
+                    let rubs = self.flash.is_some() || self.solver.plasticity == Plasticity::Accumulate;
+                    motion.findings(&self.surface, grid, boundary, pair, rubs)
+                };
                 pair.findings.extend(found);
             }
         }
@@ -181,7 +186,7 @@ impl Document {
             ),
             false => leakage.of_case(&at("leakage"), boundary, points, output, end),
         });
-        if let (Some(motion), Some(_), true) = (&motion, &leakage, swept.is_none()) {
+        if let (Some(motion), Some(_)) = (&motion, &leakage) {
             self.leaks_in_motion(&at("leakage"), motion, boundary, &mut pair);
         }
         let fluid = leakage.as_ref().and_then(|leak| at("leakage").core(leak.traction())).flatten();
@@ -203,12 +208,14 @@ impl Document {
         let flash = self.flash(checks, motion.as_ref(), &parts, pair.as_ref(), points);
         let conditions =
             self.conditions(grid, pair.as_ref(), programme, times.as_ref(), hardness.as_ref(), include);
-        let conditions = law.zip(conditions).map(|(traction, conditions)| Simulation {
-            traction,
-            tangential,
-            wear,
-            flash,
-            ..conditions
+        let dents_move = match (&self.motion, &pair, &hardness) {
+            (Some(motion), Some(pair), Some(map)) if self.solver.plasticity == Plasticity::Accumulate => {
+                motion.dents_move(&at("motion"), &self.body, pair, map.as_ref())
+            }
+            _ => Some(false),
+        };
+        let conditions = law.zip(conditions).zip(dents_move).map(|((traction, conditions), dents_move)| {
+            Simulation { dents_move, traction, tangential, wear, flash, ..conditions }
         });
         if let Some(conditions) = &conditions {
             for error in conditions.faults() {

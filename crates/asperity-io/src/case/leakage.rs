@@ -118,6 +118,11 @@ impl LeakageKeys {
         matches!(self.coupling, Some(CouplingKind::Uniform | CouplingKind::TwoWay))
     }
 
+    /// Whether its flow and the contact are solved together.
+    pub(super) fn flows_with_the_contact(&self) -> bool {
+        self.coupling == Some(CouplingKind::TwoWay)
+    }
+
     /// A key that belongs to a gas, where one is given.
     pub(super) fn of_gas(&self) -> Option<&'static str> {
         let keys = [

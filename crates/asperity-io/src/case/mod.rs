@@ -353,7 +353,7 @@ impl Case {
             let known = |quantity: &Quantity| match quantity {
                 Quantity::Velocity | Quantity::SlidingDistance => !steady,
                 Quantity::DissipatedPower => {
-                    steady || simulation.scheme != Scheme::Direct && !simulation.is_up_to_a_constant()
+                    steady || simulation.scheme != Scheme::Direct && simulation.allows(*quantity).is_ok()
                 }
                 _ => true,
             };

@@ -6,6 +6,7 @@ use asperity::finding::{self, Finding};
 use asperity::material::Creep;
 use asperity::sliding::{Direction, Path};
 use asperity::{Boundary, Grid, TimeGrid};
+use ndarray::Array2;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 
 use super::body::Body;
@@ -243,7 +244,7 @@ impl Motion {
             return at.fault(message, "kind = \"roll\", or one body", "");
         }
         let remembers: Vec<bool> = pair.creeps.iter().map(|(creep, _)| creep.remembers()).collect();
-        let over = named.or(remembers.iter().position(|remembers| *remembers)).unwrap_or(0);
+        let over = named.unwrap_or_else(|| first_to_remember(pair));
         let other = 1 - over;
         if matches!(moving.travel, Travel::Path(_)) && bodies[other].hardness_file.is_some() {
             let help = "give the file to the body that the contact slides over (`over`), or one hardness to this one";
@@ -295,6 +296,40 @@ impl Motion {
         }
     }
 
+    /// Whether dents that stay are those of the body that slides, because it is the softer one; `map` is the hardness of each cell of the
+    /// other one, where that is not the same everywhere.
+    pub fn dents_move(
+        &self,
+        at: &Place<'_>,
+        bodies: &[Body],
+        pair: &Pair,
+        map: Option<&Array2<f64>>,
+    ) -> Option<bool> {
+        if self.kind == MotionKind::Roll || bodies.len() < 2 {
+            return Some(false);
+        }
+        let over = self.named(&at.key("over"), bodies)?.unwrap_or_else(|| first_to_remember(pair));
+        let [track, slider] =
+            [over, 1 - over].map(|n| bodies[n].hardness.map_or(f64::INFINITY, Pressure::get));
+        let of_cells =
+            map.filter(|_| bodies[over].hardness_file.is_some() || bodies[over].hardness_array.is_some());
+        let [least, most] = of_cells.map_or([track; 2], |map| {
+            map.iter().fold([f64::INFINITY, 0.0], |[least, most], h| {
+                [track.min(h.min(least)), track.min(h.max(most))]
+            })
+        });
+        match slider {
+            slider if slider < least => Some(true),
+            slider if slider >= most => Some(false),
+            _ => at.sibling("solver").key("plasticity").fault(
+                "of the two bodies that slide over each other one is softer in some cells and the other one in the rest, so dents that \
+                 stay would move in part",
+                "bodies of which one is the softer one everywhere",
+                "change `hardness`, or take plasticity = \"cap\"",
+            ),
+        }
+    }
+
     /// The number of the body `over`; the inner `None` where it is not named.
     fn named(&self, at: &Place<'_>, bodies: &[Body]) -> Option<Option<usize>> {
         let Some(over) = &self.over else { return Some(None) };
@@ -315,6 +350,11 @@ impl Motion {
         };
         at.wrong(expected, "")
     }
+}
+
+/// The first body that remembers, else the first one.
+fn first_to_remember(pair: &Pair) -> usize {
+    pair.creeps.iter().position(|(creep, _)| creep.remembers()).unwrap_or(0)
 }
 
 impl Steady {
@@ -407,7 +447,7 @@ impl Moving {
         rubs: bool,
     ) -> Option<Finding> {
         let creeps = || std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
-        if !creeps().any(Creep::remembers) {
+        if pair.waves.is_none() && !creeps().any(Creep::remembers) {
             return (self.shear_stress.is_none() && !rubs).then(finding::friction_zero);
         }
         // Only what travels round meets its own track.

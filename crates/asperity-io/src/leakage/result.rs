@@ -106,7 +106,7 @@ impl LeakHistory {
 
     fn unmarked(&self, units: &Units) -> String {
         if self.last("percolates") == 0.0 {
-            let tight = words::tight(self.column("leak_time"), self.column("percolates"), units);
+            let tight = self.tight(units);
             return format!("{tight} ({})", self.leak.fluid_words());
         }
         let name = match self.leak.fluid {
@@ -115,10 +115,17 @@ impl LeakHistory {
             None => "hydraulic_gap",
         };
         let unit = self.table.series().into_iter().find(|series| series.name == name).map_or("", |s| s.units);
-        let time = units.time(self.last("leak_time"));
-        let tight = words::tight(self.column("leak_time"), self.column("percolates"), units);
+        let at = units.moment(self.table.axis.at(self.last("leak_time")));
+        let tight = self.tight(units);
         let tight = if tight.is_empty() { tight } else { format!("; {tight}") };
-        format!("{} at t = {time} ({}){tight}", units.number(self.last(name), unit), self.note(units))
+        format!("{} at {at} ({}){tight}", units.number(self.last(name), unit), self.note(units))
+    }
+
+    /// When the seal is tight, in a sentence without its full stop; empty if it leaks at all times.
+    pub fn tight(&self, units: &Units) -> String {
+        let moments: Vec<_> =
+            self.column("leak_time").iter().map(|value| self.table.axis.at(*value)).collect();
+        words::tight(&moments, self.column("percolates"), units)
     }
 
     /// What must be known beside the last leak: the fluid, and of which patch it is.
@@ -217,7 +224,7 @@ fn evaluate(
     let mut beside = if beside.is_none() { Beside::of_result(reader)? } else { beside };
     let windows = through_windows(&reader.header().setup);
     let mut diagnostics = LeakDiagnostics::default();
-    let mut table = LeakTable::default();
+    let mut table = LeakTable::new(reader.header().axis());
     for (done, index) in instants.iter().copied().enumerate() {
         if interrupt.load(Ordering::Relaxed) {
             return Err(LeakError::Interrupted);
@@ -260,7 +267,7 @@ fn evaluate(
     findings.extend(windows);
     // The findings of a case with [leakage] have it already.
     let moving = finding::leak_in_motion();
-    if reader.header().moves_in_time() && reader.findings().iter().all(|found| found.code != moving.code) {
+    if reader.header().moves() && reader.findings().iter().all(|found| found.code != moving.code) {
         findings.push(moving);
     }
     Ok(LeakHistory { leak: leak.clone(), table, findings, of_contact: of_contact(reader), size: grid.size() })

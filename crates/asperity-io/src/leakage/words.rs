@@ -5,6 +5,7 @@ use crate::answer::Units;
 use crate::choice;
 use crate::readable::quantity;
 use asperity::History;
+use asperity::drive::Coordinate;
 use asperity::traction::Action;
 
 /// 0 degC \[K\].
@@ -65,28 +66,33 @@ impl Leak {
 
 /// When the seal is tight, in a sentence without its full stop; empty if it leaks at all times. Between two of the times nothing is
 /// known, so the sentence names both.
-pub fn tight(times: &[f64], percolates: &[f64], units: &Units) -> String {
+pub fn tight(moments: &[Coordinate], percolates: &[f64], units: &Units) -> String {
     let is_tight: Vec<bool> = percolates.iter().map(|open| *open == 0.0).collect();
     if is_tight.iter().all(|tight| !tight) {
         return String::new();
     }
     if is_tight.iter().all(|tight| *tight) {
-        return if times.len() > 1 { "tight at all times".into() } else { "tight".into() };
+        let all = match moments {
+            [] | [_] => "tight".to_owned(),
+            [first, ..] => format!("tight at all {}", first.axis().plural()),
+        };
+        return all;
     }
     let changes = (1..is_tight.len()).filter(|n| is_tight[*n] != is_tight[n - 1]).map(|n| {
-        let [before, after] = [times[n - 1], times[n]].map(|time| units.time(time));
-        format!("{} between t = {before} and {after}", if is_tight[n] { "closes" } else { "opens" })
+        let (before, after) = (units.moment(moments[n - 1]), units.coordinate(moments[n]));
+        format!("{} between {before} and {after}", if is_tight[n] { "closes" } else { "opens" })
     });
-    let start = is_tight[0].then(|| format!("tight at t = {}", units.time(times[0])));
+    let start = is_tight[0].then(|| format!("tight at {}", units.moment(moments[0])));
     start.into_iter().chain(changes).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Units;
+    use super::{Coordinate, Units};
 
     fn tight(times: &[f64], percolates: &[f64]) -> String {
-        super::tight(times, percolates, &Units::default())
+        let moments: Vec<_> = times.iter().map(|time| Coordinate::Time(*time)).collect();
+        super::tight(&moments, percolates, &Units::default())
     }
 
     #[test]

@@ -11,6 +11,7 @@ use serde_json::{Map, Value, json};
 
 use super::error::{Result, StoreError, corrupt};
 use super::field_kind::FieldKind;
+use super::leak;
 use crate::{choice, finding};
 
 /// Value of the attribute `format`: marks the directories that this store may replace.
@@ -122,6 +123,11 @@ impl Header {
         self.setup.contains_key("motion") && self.axis() == Axis::Time
     }
 
+    /// Whether its surfaces move over each other, in time or in steady states.
+    pub fn moves(&self) -> bool {
+        self.setup.contains_key("motion")
+    }
+
     /// What its rows follow one another in.
     pub fn axis(&self) -> Axis {
         match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {
@@ -135,6 +141,7 @@ impl Header {
         match (name, self.axis()) {
             ("time", Axis::Velocity) => "velocity",
             ("field_time", Axis::Velocity) => "field_velocity",
+            ("leak_time", Axis::Velocity) => leak::VELOCITY.name,
             (name, _) => name,
         }
     }

@@ -13,14 +13,14 @@
 //! | `conductance` | `leak_time`, `flow_direction`, `gradient_direction` | m3 |
 //! | `fluid_pressure` | `leak_time`, `x`, `y` | Pa |
 //!
-//! They are written when a run is complete, or later, and appear together: the group's document names them last.
+//! In a sweep over velocities `leak_velocity` \[m/s\] stands in place of `leak_time`. They are written when a run is complete, or later, and appear together: the group's document names them last.
 
 use std::path::Path;
 
-use asperity::Grid;
 use asperity::finding::{
     CONSTRICTION_UNRESOLVED, FLUID_UNCOUPLED, Finding, GAPS_BELOW_ERROR, LEAK_BELOW_GAP_ERROR, WINDOW_IN_LEAK,
 };
+use asperity::{Axis, Grid};
 use ndarray::ArrayView2;
 use serde_json::{Map, Value, json};
 
@@ -117,6 +117,9 @@ const CONDUCTANCE: Series = Series::new("conductance", "m3", "effective conducta
 /// The pressure of the fluid.
 const PRESSURE: Series = Series::new("fluid_pressure", "Pa", "pressure of the fluid");
 
+/// What stands in place of `leak_time` in a sweep over velocities.
+pub(super) const VELOCITY: Series = Series::new("leak_velocity", "m/s", "velocity of the leak");
+
 /// The names of all arrays, in their order.
 fn names() -> impl Iterator<Item = &'static str> {
     NUMBERS.iter().map(|number| number.name).chain([CONDUCTANCE.name, PRESSURE.name])
@@ -124,7 +127,7 @@ fn names() -> impl Iterator<Item = &'static str> {
 
 /// Whether a result may have an array of that name.
 pub(super) fn owns(name: &str) -> bool {
-    names().any(|known| known == name)
+    name == VELOCITY.name || names().any(|known| known == name)
 }
 
 /// What a result holds about leaks.
@@ -138,24 +141,32 @@ pub struct Leaks {
     pub(super) names: Vec<&'static str>,
     /// Whether the fluid is a gas.
     pub(super) gas: bool,
+    /// What its rows follow one another in.
+    pub(super) axis: Axis,
 }
 
 impl Leaks {
     /// What the documents of a group say.
     pub(super) fn of(attributes: &Map<String, Value>, metadata: &Map<String, Value>) -> Option<Leaks> {
-        let rows = metadata.get("leak_time")?.pointer("/shape/0")?.as_u64()?;
+        let is_sweep = metadata.contains_key(VELOCITY.name);
+        let along = if is_sweep { VELOCITY.name } else { NUMBERS[0].name };
+        let rows = metadata.get(along)?.pointer("/shape/0")?.as_u64()?;
+        let has =
+            |name: &&'static str| metadata.contains_key(if *name == NUMBERS[0].name { along } else { *name });
         let settings = attributes.get(ATTRIBUTE).and_then(Value::as_str);
         Some(Leaks {
             rows: usize::try_from(rows).ok()?,
             settings: settings.and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default(),
-            names: names().filter(|name| metadata.contains_key(*name)).collect(),
+            names: names().filter(has).collect(),
             gas: metadata.contains_key("leak_rate_standard"),
+            axis: if is_sweep { Axis::Velocity } else { Axis::Time },
         })
     }
 
     /// What each leak has one number of.
     pub fn series(&self) -> Vec<Series> {
-        leak_series(self.gas).filter(|series| self.names.contains(&series.name)).collect()
+        let own = NUMBERS.iter().filter(|number| self.names.contains(&number.name));
+        own.map(|number| number.along(self.axis, self.gas)).collect()
     }
 
     /// Whether the pressure of the fluid is stored.
@@ -169,7 +180,7 @@ impl Leaks {
     }
 
     pub(super) fn arrays(&self, grid: &Grid) -> Vec<ArraySpec> {
-        self.names.iter().map(|name| spec(name, self.rows, grid, self.gas)).collect()
+        self.names.iter().map(|name| spec(name, self.rows, grid, (self.axis, self.gas))).collect()
     }
 }
 
@@ -177,12 +188,20 @@ impl Number {
     fn series(&self, gas: bool) -> Series {
         Series::new(self.name, self.units[usize::from(gas)], self.long_name)
     }
+
+    /// The same of a result whose rows follow one another in this.
+    fn along(&self, axis: Axis, gas: bool) -> Series {
+        match (self.name, axis) {
+            ("leak_time", Axis::Velocity) => VELOCITY,
+            _ => self.series(gas),
+        }
+    }
 }
 
-fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
-    let leaks = ("leak_time", rows);
+fn spec(name: &'static str, rows: usize, grid: &Grid, (axis, gas): (Axis, bool)) -> ArraySpec {
+    let leaks = (NUMBERS[0].along(axis, gas).name, rows);
     if let Some(number) = NUMBERS.iter().find(|number| number.name == name) {
-        return ArraySpec::new(number.series(gas), Storage::Whole, &[leaks]).of_type(number.data_type);
+        return ArraySpec::new(number.along(axis, gas), Storage::Whole, &[leaks]).of_type(number.data_type);
     }
     if name == PRESSURE.name {
         return ArraySpec::new(PRESSURE, Storage::Maps, &[&[leaks], cells(grid).as_slice()].concat());
@@ -192,14 +211,21 @@ fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
 }
 
 /// Leaks over time, by name.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LeakTable {
+    /// What its rows follow one another in: times, or the velocities of a sweep, which stand in the column `leak_time` too.
+    pub axis: Axis,
     /// One column per array.
     columns: Vec<(&'static str, Vec<f64>)>,
     gas: bool,
 }
 
 impl LeakTable {
+    /// No leaks yet.
+    pub fn new(axis: Axis) -> Self {
+        LeakTable { axis, columns: vec![], gas: false }
+    }
+
     /// The leaks that a result holds.
     ///
     /// # Errors
@@ -208,7 +234,7 @@ impl LeakTable {
         let Some(leaks) = reader.leaks() else { return Ok(None) };
         let names = leaks.names.iter().filter(|name| **name != PRESSURE.name);
         let columns = names.map(|name| Ok((*name, reader.leak(name)?))).collect::<Result<_>>()?;
-        Ok(Some(LeakTable { columns, gas: leaks.gas }))
+        Ok(Some(LeakTable { axis: leaks.axis, columns, gas: leaks.gas }))
     }
 
     /// Whether a finding of this code is about leaks.
@@ -251,7 +277,8 @@ impl LeakTable {
     /// Names, units and meanings.
     pub fn series(&self) -> Vec<Series> {
         let names = self.columns.iter().map(|column| column.0).collect();
-        Leaks { rows: self.len(), settings: Value::Null, names, gas: self.gas }.series()
+        let (rows, axis) = (self.len(), self.axis);
+        Leaks { rows, settings: Value::Null, names, gas: self.gas, axis }.series()
     }
 }
 
@@ -280,7 +307,7 @@ impl LeakWriter {
 
     fn chunks(&self, name: &'static str, rows: usize, gas: bool) -> Chunks {
         let Document { header, form, .. } = &self.writer.document;
-        Chunks::new(self.writer.path(), &spec(name, rows, &header.grid, gas).of_form(*form))
+        Chunks::new(self.writer.path(), &spec(name, rows, &header.grid, (header.axis(), gas)).of_form(*form))
     }
 
     /// Writes the numbers and makes all of it visible.
@@ -293,7 +320,7 @@ impl LeakWriter {
             self.chunks(name, rows, gas).write_whole(numbers)?;
         }
         let stored = table.columns.iter().map(|column| column.0).chain(self.field.then_some(PRESSURE.name));
-        let leaks = Leaks { rows, settings, names: stored.collect(), gas };
+        let leaks = Leaks { rows, settings, names: stored.collect(), gas, axis: table.axis };
         let gone: Vec<_> = names().filter(|name| !leaks.names.contains(name)).collect();
         let Document { progress, leaks: known, .. } = &mut self.writer.document;
         *known = Some(leaks);

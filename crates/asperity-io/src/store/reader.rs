@@ -364,8 +364,12 @@ impl Reader {
     /// # Errors
     /// [`StoreError::Missing`] where it is not stored, [`StoreError::Corrupt`] where a file is missing or damaged.
     pub fn leak(&self, name: &str) -> Result<Vec<f64>> {
+        let along = self.header().stored("leak_time");
+        let own = if name == along { "leak_time" } else { name };
         match self.leaks() {
-            Some(leaks) if leaks.names.contains(&name) => self.numbers(name),
+            Some(leaks) if leaks.names.contains(&own) => {
+                self.numbers(if own == "leak_time" { along } else { name })
+            }
             Some(_) => Err(self.missing(format!("leakage `{name}`"), "its leakage lacks this number".into())),
             None => Err(self.no_leaks()),
         }

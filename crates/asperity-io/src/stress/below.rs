@@ -2,7 +2,7 @@
 
 use asperity::finding::Finding;
 use asperity::stress::{Extreme, Survey, unseen_depths};
-use asperity::{Grid, finding};
+use asperity::{Axis, Grid, finding};
 
 use crate::store::{At, FieldKind, Reader, Result, StressSet};
 
@@ -33,6 +33,8 @@ pub struct Below {
     pub set: StressSet,
     /// The cells of the result.
     pub grid: Grid,
+    /// What its times are: those of a run, or the velocities of a sweep.
+    pub axis: Axis,
     /// What was found at each of the times.
     pub instants: Vec<Instant>,
     /// Time \[s\] and load \[N\] of the row with the largest pressure, if all computed times are far from it.
@@ -93,7 +95,8 @@ impl Below {
         };
         let instants: Vec<Instant> = set.instants.iter().map(instant).collect::<Result<_>>()?;
         let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
-        Ok(Some(Below { grid: reader.header().grid, instants, set: set.clone(), missed }))
+        let (grid, axis) = (reader.header().grid, reader.header().axis());
+        Ok(Some(Below { grid, axis, instants, set: set.clone(), missed }))
     }
 
     /// A number of an instant, by its name in the result; NaN if it is not stored.
@@ -126,7 +129,9 @@ impl Below {
         let Some(worst) = self.worst() else { return vec![] };
         let mut found = vec![];
         found.extend(
-            self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load, self.grid.units("N"))),
+            self.missed.map(|[at, load]| {
+                finding::stress_times_miss_peak(self.axis.at(at), load, self.grid.units("N"))
+            }),
         );
         let cell = self.grid.longest_cell();
         let depth = self.number(worst, "max_mises_depth");

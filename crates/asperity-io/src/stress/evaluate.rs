@@ -81,7 +81,8 @@ pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> 
 
 fn below(reader: &Reader, set: StressSet, instants: Vec<Instant>) -> Result<Below, StressError> {
     let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
-    Ok(Below { grid: reader.header().grid, set, instants, missed })
+    let (grid, axis) = (reader.header().grid, reader.header().axis());
+    Ok(Below { grid, axis, set, instants, missed })
 }
 
 /// Refuses a result of bodies of layers.

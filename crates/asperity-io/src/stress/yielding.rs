@@ -45,16 +45,18 @@ pub fn first_yield(below: &Below) -> Option<FirstYield> {
 }
 
 impl FirstYield {
-    /// One sentence, about what was found of `set`.
-    pub fn sentence(&self, set: &StressSet) -> String {
-        let unit = if set.line { "N/m" } else { "N" };
-        let state =
-            |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, unit));
+    /// One sentence, about what was found.
+    pub fn sentence(&self, below: &Below) -> String {
+        let unit = if below.set.line { "N/m" } else { "N" };
+        let (axis, what) = (below.axis, below.axis.plural());
+        let state = |[at, load]: [f64; 2]| {
+            format!("{} = {} (load {})", axis.symbol(), quantity(at, axis.unit()), quantity(load, unit))
+        };
         match self {
             FirstYield::Never { safety, times, missed, unseen } => {
                 let at = match times {
-                    1 => "at the one computed time".to_owned(),
-                    times => format!("at the {times} computed times"),
+                    1 => format!("at the one computed {}", axis.name()),
+                    times => format!("at the {times} computed {what}"),
                 };
                 let mut sentence = if safety.is_finite() && *safety < 1e6 {
                     let found = match unseen {
@@ -73,7 +75,7 @@ impl FirstYield {
                 }
                 if let Some(missed) = missed {
                     sentence +=
-                        &format!("; the largest pressure, at {}, is not among the times", state(*missed));
+                        &format!("; the largest pressure, at {}, is not among the {what}", state(*missed));
                 }
                 sentence
             }

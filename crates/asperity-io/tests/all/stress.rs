@@ -142,7 +142,7 @@ fn depths_that_miss_the_largest_stress_do_not_exclude_yield() {
             "{list} {found:?}"
         );
         let below = Below::of(&reader).unwrap().unwrap();
-        let words = first_yield(&below).unwrap().sentence(&below.set);
+        let words = first_yield(&below).unwrap().sentence(&below);
         assert!(
             words.contains("not excluded") && words.contains(place) && !words.contains("no yield"),
             "{words}"

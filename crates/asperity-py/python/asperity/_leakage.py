@@ -213,7 +213,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     warn(findings_of(json.loads(told)))
     columns = {name: np.array([row[name] for row in rows]) for name in (*LEAKS, "leak_rate_standard", "conductance") if rows[0].get(name) is not None}
     pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
-    return _dataset(result, {**columns, "leak_time": result.field_times}, pressures)
+    return _dataset(result, {**columns, result._leaks_along: result.field_times}, pressures)
 
 
 def stored(result: Result) -> xarray.Dataset:
@@ -224,13 +224,15 @@ def stored(result: Result) -> xarray.Dataset:
 def _dataset(result: Result, columns: dict[str, Any], pressures: Any) -> xarray.Dataset:
     """Leaks over time with their units."""
     entries = GAS_LEAKS if "leak_rate_standard" in columns else LEAKS
+    along, axis = result._leaks_along, result._axis
     values = {name: columns[name].astype(bool) if name in _FLAGS else columns[name] for name in columns if name in entries}
-    data: dict[str, Any] = {name: entries[name].variable("leak_time", column) for name, column in values.items()}
+    data: dict[str, Any] = {name: entries[name].variable(along, column) for name, column in values.items()}
+    data[along] = variable(along, columns[along], axis.unit, f"{axis.name} of the leak")
     if "conductance" in columns:
         tensor = columns["conductance"].reshape(-1, 2, 2)
-        data["conductance"] = variable(("leak_time", "flow_direction", "gradient_direction"), tensor, "m^3", "effective conductance")
+        data["conductance"] = variable((along, "flow_direction", "gradient_direction"), tensor, "m^3", "effective conductance")
         data |= {axis: (axis, ["x", "y"]) for axis in ("flow_direction", "gradient_direction")}
     if pressures is not None:
-        data["fluid_pressure"] = variable(("leak_time", "x", "y"), pressures, "Pa", "pressure of the fluid")
+        data["fluid_pressure"] = variable((along, "x", "y"), pressures, "Pa", "pressure of the fluid")
         data |= result._coordinates
     return dataset(data)

@@ -349,7 +349,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
         field: bool | None = None
     ) -> xarray.Dataset:
-        """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
+        """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time`, of steady states over `leak_velocity`
+        (see :func:`leakage` and docs/leakage.md).
 
         Without arguments the leaks that the run stored. Otherwise those of a liquid (`pressure_drop` [Pa], `viscosity` [Pa s]), of a
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
@@ -545,11 +546,16 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return _on_grid(found, self.is_line)
 
     @property
+    def _leaks_along(self) -> str:
+        """What the leaks follow one another in: `leak_time`, or `leak_velocity` in a sweep."""
+        return f"leak_{self._axis.name}"
+
+    @property
     def _fluid_pressures(self) -> Floats | None:
         """Pressures of the fluid of shape (leak_time, x, y), where they are stored."""
         if (store := self._disk()) is None or not store.has_fluid_pressure:
             return None
-        return np.array([store.fluid_pressure(n) for n in range(len(self._leaks["leak_time"]))])
+        return np.array([store.fluid_pressure(n) for n in range(len(self._leaks[self._leaks_along]))])
 
     @property
     def _stress_fields(self) -> list[str]:

@@ -472,7 +472,7 @@ class _Table:
     def add_leaks(self) -> None:
         """Leaks that the cases ask for, at the times of their fields."""
         leaks = [result._leaks for result in self.whole if result._leaks]
-        most = max((len(table["leak_time"]) for table in leaks), default=0)
+        most = max((len(table["leak_step"]) for table in leaks), default=0)
         entries = GAS_LEAKS if any("leak_rate_standard" in table for table in leaks) else LEAKS
         for name in (name for name in entries if any(name in table for table in leaks)):
             into = self.coordinates if name == "leak_time" else self.columns

@@ -115,7 +115,7 @@ class Plots:
         estimates = dict(critical_constriction="leak_estimate_junction", effective_medium="leak_estimate_medium", if_the_fluid_did_not_act="leak_rate_one_way")
         panels = [panel("leak rate", found["leak_rate"].attrs["units"], solved="leak_rate", **estimates)] if "leak_rate" in found else []
         panels.append(panel("gap", "m", hydraulic="hydraulic_gap", critical="critical_gap"))
-        drawn = self._over_rows("leak", panels, axes, log_time, label, style, over=np.asarray(found["leak_time"].values))
+        drawn = self._over_rows("leak", panels, axes, log_time, label, style, over=np.asarray(found[self._result._leaks_along].values))
         for ax in drawn.flat if open_.any() else ():
             ax.set_yscale("log", nonpositive="mask")
         return drawn

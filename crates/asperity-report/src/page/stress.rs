@@ -32,8 +32,8 @@ fn facts(below: &Below) -> Vec<[String; 2]> {
     {
         let [value, depth] = [key.to_owned(), format!("{key}_depth")].map(|name| below.number(worst, &name));
         if depth.is_finite() {
-            let time = quantity(worst.time, "s");
-            let words = format!("{} at depth {}, t = {time}", quantity(value, "Pa"), quantity(depth, "m"));
+            let at = format!("{} = {}", below.axis.symbol(), quantity(worst.time, below.axis.unit()));
+            let words = format!("{} at depth {}, {at}", quantity(value, "Pa"), quantity(depth, "m"));
             lines.push([format!("Largest {name} stress"), words]);
         }
     }
@@ -47,7 +47,7 @@ fn facts(below: &Below) -> Vec<[String; 2]> {
         lines.push(["Range of the orthogonal shear stress".into(), range]);
     }
     if let (Some(limit), Some(first)) = (set.yield_stress, first_yield(below)) {
-        lines.push([format!("Yield stress {}", quantity(limit, "Pa")), first.sentence(set)]);
+        lines.push([format!("Yield stress {}", quantity(limit, "Pa")), first.sentence(below)]);
     }
     lines
 }

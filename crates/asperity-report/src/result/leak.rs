@@ -10,7 +10,7 @@ use crate::leak::{heading, maps, words};
 
 /// The leaks of a result as they are stored, over time.
 fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> {
-    let (units, log) = (Units::of(reader, &options.units), options.log);
+    let (units, log, along) = (Units::of(reader, &options.units), options.log, reader.header().axis());
     let time = reader.leak("leak_time")?;
     let steps = reader.leak("leak_step")?;
     // A leak that is taken back is not drawn, nor that it is tight.
@@ -26,8 +26,9 @@ fn curves(reader: &Reader, options: &Options) -> Result<Vec<Curves>, PlotError> 
     let first = time.iter().copied().find(|time| *time > 0.0 || !log_time).unwrap_or(0.0);
     let last = time.last().copied().unwrap_or(0.0);
     let axis = || {
-        let axis = if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
-        let axis = axis.shown_in(units.shown("time"));
+        let (name, unit) = (along.name(), along.unit());
+        let axis = if log_time { Axis::log(name, unit) } else { Axis::linear(name, unit) };
+        let axis = if along == asperity::Axis::Time { axis.shown_in(units.shown("time")) } else { axis };
         if last > first { axis.spanning(first, last) } else { axis }
     };
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
@@ -136,7 +137,7 @@ fn flow(reader: &Reader, wanted: At, shown: &str, units: &Units) -> Result<(Vec<
     let instant = if wanted == At::Last { last_leak(reader) } else { wanted };
     let (maps, mut caption) = at(reader, instant, &units)?;
     if reader.index(instant)? != reader.index(wanted)? {
-        caption += &format!(" {shown} the last stored time at which it leaks.");
+        caption += &format!(" {shown} the last stored {} at which it leaks.", reader.header().axis().name());
     }
     Ok((maps, caption))
 }
@@ -152,10 +153,10 @@ fn at(reader: &Reader, at: At, units: &Units) -> Result<(Vec<Map>, String), Plot
     let contact = reader.contact_states(at)?;
     let grid = &reader.header().grid;
     let found = leak.of_gap(grid, gap.view(), Some(contact.view()), time)?;
-    let moment = units.time(time);
+    let moment = units.moment(reader.header().axis().at(time));
     let validity = validity(reader, reader.field_steps()[index]);
     let shown = validity.mark(heading(&found, units));
-    let caption = format!("t = {moment}: {shown}, {}. {}", leak.words(), words(&found, &validity));
+    let caption = format!("{moment}: {shown}, {}. {}", leak.words(), words(&found, &validity));
     Ok((maps(&found, gap.view(), grid.size()), caption))
 }
 

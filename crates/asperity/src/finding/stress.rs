@@ -5,6 +5,7 @@ use super::{
     Finding, STRESS_AT_DEEPEST, STRESS_DEPTHS_COARSE, STRESS_TIMES_MISS_PEAK, STRESS_UNRESOLVED,
     YIELD_EXCEEDED,
 };
+use crate::drive::Coordinate;
 
 /// The codes of findings about the stress: a new stress replaces them.
 pub const OF_STRESS: [&str; 5] =
@@ -24,15 +25,17 @@ pub fn stress_unresolved(depth: f64, cell: f64) -> Finding {
     Finding::warning(STRESS_UNRESOLVED, depth / cell, CELLS, text)
 }
 
-/// The largest pressure of the run, at `time` \[s\] under `load` (in `unit`, "N" or "N/m"), is not among the times of the stress.
-pub fn stress_times_miss_peak(time: f64, load: f64, unit: &str) -> Finding {
+/// The largest pressure of the run, in the row `at` under `load` (in `unit`, "N" or "N/m"), is not among the times of the stress.
+pub fn stress_times_miss_peak(at: Coordinate, load: f64, unit: &str) -> Finding {
     let text = format!(
-        "The largest pressure of the run, at t = {} under {}, is not among the times at which the stress below the surface is \
-         computed: it was larger then. Store the fields at that time too (output.every or output.times).",
-        si(time, "s"),
-        si(load, unit)
+        "The largest pressure of the run, at {} = {} under {}, is not among the {} at which the stress below the surface is \
+         computed: it was larger then. Store the fields of that row too (output.every or output.times).",
+        at.axis().symbol(),
+        si(at.value(), at.axis().unit()),
+        si(load, unit),
+        at.axis().plural()
     );
-    Finding::warning(STRESS_TIMES_MISS_PEAK, time, time, text)
+    Finding::warning(STRESS_TIMES_MISS_PEAK, at.value(), at.value(), text)
 }
 
 /// The largest von Mises stress, found at `depth` \[m\], may be larger between the `unseen` depths \[m\] of

@@ -3,30 +3,83 @@
 //! A cell at the hardness ends a row with an overlap, h < 0. That much of it was pushed aside for good: it is added to
 //! the undeformed gap, h0 <- h0 - h, so that the cell ends the row just closed, h = 0, at p = H. The state stays a
 //! solution of the contact conditions, now of the flattened surface.
+//!
+//! In motion the gap is made anew at each place of the contact. The dents are kept in the frame of the body that has them: they stay on
+//! the grid, or go with the body that slides.
 
-use super::{Process, Solved};
+use std::sync::Arc;
+
+use super::{Process, Solved, carry};
 use crate::error::Result;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
-use crate::step::{Loader, Saver, UndeformedGap};
-use asperity_sweep::{each, each_with_sums};
+use crate::sliding::Slopes;
+use crate::step::{Interval, Loader, Saver, UndeformedGap};
+use asperity_sweep::{each, each_with_sums, zeros};
+use ndarray::Array2;
 
-#[derive(Default)]
 pub(super) struct Flattening {
     /// Σ of what was flattened, per area of a cell \[m\].
     depth: f64,
     cell_area: f64,
+    /// Of a contact in motion.
+    carried: Option<Carried>,
 }
 
 impl Flattening {
     /// `None` where the cut-off leaves no flattening.
-    pub(super) fn of(simulation: &Simulation) -> Option<Self> {
-        (simulation.plasticity == Plasticity::Accumulate)
-            .then(|| Flattening { depth: 0.0, cell_area: simulation.grid.cell_area() })
+    pub(super) fn of(simulation: &Arc<Simulation>) -> Option<Self> {
+        let carried = simulation.motion.as_ref().map(|_| Carried {
+            simulation: simulation.clone(),
+            dents: zeros(simulation.grid.len()),
+            offset: [0.0; 2],
+        });
+        (simulation.plasticity == Plasticity::Accumulate).then(|| Flattening {
+            depth: 0.0,
+            cell_area: simulation.grid.cell_area(),
+            carried,
+        })
+    }
+}
+
+/// The dents of one body of a contact in motion.
+struct Carried {
+    simulation: Arc<Simulation>,
+    /// Their depths in the frame of the body that has them \[m\].
+    dents: Vec<f64>,
+    /// Cells along x and y that this body has gone.
+    offset: [f64; 2],
+}
+
+impl Carried {
+    /// Adds them to a gap that does not have them, where the body is at a time.
+    fn add_to(&mut self, gap: &mut UndeformedGap, time: f64) {
+        let Simulation { grid, boundary, motion, dents_move, .. } = &*self.simulation;
+        let moving = motion.as_ref().filter(|_| *dents_move);
+        self.offset = moving.map_or([0.0; 2], |motion| motion.cells_gone(grid, time));
+        let on_grid = carry(grid, *boundary, self.offset, &self.dents);
+        each(gap.own_mut(), &on_grid[..], |h, dent| *h += dent);
+        if moving.is_some() {
+            let own = Array2::from_shape_vec(grid.shape(), on_grid).expect("one dent for each cell");
+            gap.add_slopes(Slopes::of_heights(grid, *boundary, &own));
+        }
+    }
+
+    /// Takes in those of a row, in the frame of the grid.
+    fn take_in(&mut self, dents: &[f64]) {
+        let Simulation { grid, boundary, .. } = &*self.simulation;
+        let own = carry(grid, *boundary, self.offset.map(|cells| -cells), dents);
+        each(&mut self.dents, &own[..], |to, dent| *to += dent);
     }
 }
 
 impl Process for Flattening {
+    /// Gives the gap of a contact in motion its dents.
+    fn open(&mut self, step: &Interval, gap: &mut UndeformedGap) -> Result<()> {
+        self.carried.iter_mut().for_each(|carried| carried.add_to(gap, step.instant.time));
+        Ok(())
+    }
+
     /// Makes the overlap of the row a part of the undeformed gap.
     fn accept(&mut self, row: &mut Solved<'_>) {
         let (c, w) = (row.compliance, row.now.approach);
@@ -37,6 +90,11 @@ impl Process for Flattening {
         };
         let (p, u) = (&row.contact.pressure[..], &row.now.unit_displacement[..]);
         let cells = (p, u, &row.own_gap[..], row.hardness);
+        if let Some(carried) = &mut self.carried {
+            let mut dents = zeros(p.len());
+            each(&mut dents, cells, |dent, (p, u, gap, most)| *dent = overlap(p, u, gap, most));
+            carried.take_in(&dents);
+        }
         let [depth] = each_with_sums(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| {
             let overlap = overlap(p, u, gap, most);
             *h += overlap;
@@ -58,10 +116,12 @@ impl Process for Flattening {
     fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
         to.field("gap", gap.now());
         to.value("depth", &self.depth);
+        self.carried.iter().for_each(|carried| to.field("dents", &carried.dents));
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
         self.depth = from.get("depth")?;
+        self.carried.iter_mut().try_for_each(|carried| from.field_into("dents", &mut carried.dents))?;
         from.field_into("gap", gap.own_mut())
     }
 }

@@ -15,7 +15,7 @@ mod stiffness;
 mod wear;
 
 pub use motion::{Motion, in_contact_frame};
-pub(crate) use motion::{cells, roll};
+pub(crate) use motion::{carry, cells, roll};
 pub(crate) use partial_slip::SlipFields;
 
 use std::sync::Arc;

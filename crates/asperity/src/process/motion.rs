@@ -4,13 +4,13 @@
 //! contact that it would be anyway. Nothing is carried along, so nothing is lost on the way. Steps end where the gap has moved
 //! by whole cells: the contact patch only shifts, and just the history changes.
 
+use asperity_sweep::{each, zeros};
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
 use crate::error::{Of, Result, require, significant};
 use crate::flash::{FlashSolver, Rise, Rubbing};
-use crate::grid::Boundary;
-use crate::material::Creep;
+use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
 use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, ShearStress, Slopes};
@@ -41,6 +41,12 @@ impl Motion {
         require(fine, "cells_per_step", cells, "greater than 0 and at most 8").of("cells_per_step")
     }
 
+    /// Cells along x and y that the contact has gone at a time.
+    pub(crate) fn cells_gone(&self, grid: &Grid, time: f64) -> [f64; 2] {
+        let (gone, spacing, unit) = (self.path.position(time), grid.spacing(), self.direction.unit());
+        [0, 1].map(|axis| near_whole(unit[axis] * gone / spacing[axis]))
+    }
+
     /// Length of a step along the path, at most \[m\].
     fn step(&self, simulation: &Simulation) -> f64 {
         self.cells_per_step * self.direction.cell(&simulation.grid)
@@ -57,12 +63,12 @@ impl Motion {
     /// Checks what can be known before the run.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
         Motion::check_cells_per_step(self.cells_per_step)?;
-        let is_fine = simulation.wear.is_none() || self.cells_per_step <= 1.0;
+        let stays = simulation.wear.is_some() || simulation.plasticity == Plasticity::Accumulate;
         require(
-            is_fine,
-            "cells_per_step of surfaces that wear",
+            !stays || self.cells_per_step <= 1.0,
+            "cells_per_step of surfaces that wear or keep their dents",
             self.cells_per_step,
-            "at most 1: longer steps wear stripes",
+            "at most 1: longer steps leave stripes",
         )
         .of("cells_per_step")?;
         let stops = self.stops(simulation)?;
@@ -72,14 +78,11 @@ impl Motion {
             format!("{:?}", simulation.scheme).to_lowercase(),
             "linear: with a pressure that is constant in each step friction is wrong by tens of per cent",
         )?;
-        let expected = "cap: which of the two bodies keeps the dents is not known";
-        let cap = simulation.plasticity == Plasticity::Cap;
-        require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
         self.direction.validate(simulation)?;
         self.shear_stress.iter().try_for_each(ShearStress::validate).of("shear_stress")?;
         let follows = self.gap.follows();
         // A smooth slider over a contact that stays is everywhere alike.
-        let is_alike = !follows && !self.gap.moves_and_stands()[0] && simulation.wear.is_none();
+        let is_alike = !follows && !self.gap.moves_and_stands()[0] && !stays;
         if simulation.boundary == Boundary::Free && !is_alike {
             let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
@@ -109,8 +112,8 @@ pub(super) struct Moving {
     motion: Motion,
     spacing: [f64; 2],
     slopes: Slopes,
-    /// Whether wear changes the gap besides.
-    wears: bool,
+    /// Whether wear or dents change the gap besides.
+    changes: bool,
     /// How far it has moved \[m\].
     distance: f64,
     /// How far it had at the end of the last row.
@@ -167,7 +170,7 @@ impl Moving {
             motion,
             spacing,
             slopes,
-            wears: simulation.wear.is_some(),
+            changes: simulation.wear.is_some() || simulation.plasticity == Plasticity::Accumulate,
             distance: 0.0,
             before: 0.0,
             friction: Friction::default(),
@@ -180,16 +183,16 @@ impl Moving {
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
         let velocity = self.motion.path.velocity(row.step.instant.time);
-        let worn = row.undeformed.worn_slopes.as_ref().map(|worn| self.slopes.and(worn));
+        let changed = row.undeformed.own_slopes.as_ref().map(|own| self.slopes.and(own));
         let contact = ContactForces {
             simulation: row.simulation,
             direction: self.motion.direction,
-            slopes: worn.as_ref().unwrap_or(&self.slopes),
+            slopes: changed.as_ref().unwrap_or(&self.slopes),
             state: row.now,
             contact: &row.contact.pressure,
             gap: row.gap(),
             compliance: row.compliance,
-            remembers: row.simulation.parts().any(Creep::remembers),
+            loses: row.simulation.loses(),
             velocity,
             sense: self.motion.path.sense(row.step.instant.time),
             distance: self.distance,
@@ -216,9 +219,10 @@ impl Moving {
     }
 
     fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) {
-        if distance == self.distance && !self.wears {
+        if distance == self.distance && !self.changes {
             return;
         }
+        gap.own_slopes = None;
         let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction);
         gap.own_mut().iter_mut().zip(&moved).for_each(|(to, h)| *to = *h);
         (self.slopes, self.distance) = (slopes, distance);
@@ -300,6 +304,11 @@ impl Process for Moving {
     }
 }
 
+/// The number itself, or the whole number that it is up to rounding.
+fn near_whole(cells: f64) -> f64 {
+    if (cells - cells.round()).abs() < 1e-6 { cells.round() } else { cells }
+}
+
 /// A distance in this direction, in cells along x and y, rounded.
 pub(crate) fn cells(direction: Direction, spacing: [f64; 2], distance: f64) -> [isize; 2] {
     let unit = direction.unit();
@@ -338,4 +347,21 @@ pub(crate) fn roll(
             *to = boundary.beside(j, -shift[1], ny).map_or(0.0, |b| from[a * ny + b]);
         }
     }
+}
+
+/// A field moved by these cells along x and y, between cells linearly; beyond the ends of a free domain there is 0.
+pub(crate) fn carry(grid: &Grid, boundary: Boundary, offset: [f64; 2], field: &[f64]) -> Vec<f64> {
+    let whole = offset.map(f64::floor);
+    let part = [0, 1].map(|axis| offset[axis] - whole[axis]);
+    let (mut sum, mut corner): (Vec<f64>, Vec<f64>) = (zeros(field.len()), zeros(field.len()));
+    for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+        let weight = |next: i32, part: f64| if next == 1 { part } else { 1.0 - part };
+        let weight = weight(i, part[0]) * weight(j, part[1]);
+        if weight != 0.0 {
+            let shift = [whole[0] as isize + i as isize, whole[1] as isize + j as isize];
+            roll(grid.shape(), boundary, shift, field, &mut corner);
+            each(&mut sum, &corner[..], |to, from| *to += weight * from);
+        }
+    }
+    sum
 }

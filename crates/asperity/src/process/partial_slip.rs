@@ -65,6 +65,8 @@ pub(super) struct PartialSlip {
     numbers: SlipRow,
     /// The largest energy norm of the tractions so far, squared.
     energy: f64,
+    /// What the springs hold under the tractions, per area of a cell, where account is kept of it.
+    stored: Option<f64>,
     coupled: Option<Coupled>,
     found: Found,
 }
@@ -91,6 +93,7 @@ saved! {
     PartialSlip {
         "course": course;
         "numbers": numbers.force, numbers.displacement, numbers.work, load, energy;
+        "stored": stored;
     }
     fields {
         "path": path;
@@ -111,6 +114,9 @@ impl PartialSlip {
             lateral: Lateral::new(grid, simulation.boundary, law.beta),
             under_pressure: zeros(n),
         });
+        let mut memories = [history::of(simulation)?, history::of(simulation)?];
+        let tracks =
+            simulation.quantities.has_energy() && memories.iter_mut().all(|memory| memory.track_energy());
         Ok(Some(PartialSlip {
             law: law.clone(),
             // A pressure that moves the surfaces along each other is no course of the force.
@@ -118,7 +124,7 @@ impl PartialSlip {
             load: 0.0,
             course: [[0.0; 2]; 2],
             solver: SlipSolver::new(grid, simulation.boundary, Cerruti { poisson: law.poisson }),
-            memories: [history::of(simulation)?, history::of(simulation)?],
+            memories,
             before: states(),
             now: states(),
             slip: Slip { traction: zeros(n), unit: zeros(n), displacement: [0.0; 2] },
@@ -133,6 +139,7 @@ impl PartialSlip {
             recalled: zeros(n),
             numbers: SlipRow::default(),
             energy: 0.0,
+            stored: tracks.then_some(0.0),
             coupled,
             found: Found::default(),
         }))
@@ -226,6 +233,28 @@ impl PartialSlip {
         };
     }
 
+    /// Adds what the tractions did to the energies of the bodies, and the work of the load along the surfaces: the mean force times the
+    /// way, in a jump what bodies and friction take. Sums over both components: by itself none of them is an energy.
+    fn add_energies(&mut self, row: &mut Solved<'_>, before: &SlipRow) {
+        let (Some(stored_before), Some(normal)) = (self.stored, &mut row.exchange) else { return };
+        let (mut stored, mut work) = (0.0, 0.0);
+        for axis in 0..2 {
+            let ends = [&self.before[axis], &self.now[axis]];
+            let ends = Ends::unlimited(ends, [0.0; 2], &self.recalled, &self.rest);
+            let Some(own) = self.memories[axis].exchange(&ends) else { return };
+            stored += own.stored;
+            work += own.work;
+        }
+        normal.stored += stored;
+        normal.heat += (work - (stored - stored_before)).max(0.0);
+        self.stored = Some(stored);
+        let now = &self.numbers;
+        row.other_work += match row.step.length() > 0.0 {
+            true => 0.5 * inner(plus(before.force, now.force), minus(now.displacement, before.displacement)),
+            false => row.simulation.grid.cell_area() * work + now.work - before.work,
+        };
+    }
+
     /// Finds the tractions of an attempt.
     ///
     /// # Errors
@@ -310,6 +339,7 @@ impl Process for PartialSlip {
     }
 
     fn accept(&mut self, row: &mut Solved<'_>) {
+        let before = self.numbers;
         let Found { compliance, loads, outcome, .. } = std::mem::take(&mut self.found);
         self.load = loads[1];
         self.course = [self.course[1], self.law.at(row.step.instant.time)];
@@ -327,6 +357,7 @@ impl Process for PartialSlip {
             let ends = [&self.before[axis], &self.now[axis]];
             self.memories[axis].close(&Ends::unlimited(ends, loads, &self.recalled, &self.rest));
         }
+        self.add_energies(row, &before);
     }
 
     fn slip(&self) -> Option<SlipFields<'_>> {

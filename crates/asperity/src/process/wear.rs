@@ -99,10 +99,8 @@ impl Wearing {
 
     /// Cells along x and y that the body has gone at a time.
     fn offset_at(&self, time: f64) -> [f64; 2] {
-        let Some(motion) = &self.simulation.motion else { return [0.0; 2] };
-        let (gone, spacing) = (motion.path.position(time), self.simulation.grid.spacing());
-        let unit = motion.direction.unit();
-        [0, 1].map(|axis| near_whole(unit[axis] * gone / spacing[axis]))
+        let motion = self.simulation.motion.as_ref();
+        motion.map_or([0.0; 2], |motion| motion.cells_gone(&self.simulation.grid, time))
     }
 
     /// Finds what the surfaces of a row recede by after it because of its slip, and the pressure that takes it off.
@@ -185,11 +183,6 @@ impl Wearing {
     }
 }
 
-/// The number itself, or the whole number that it is up to rounding.
-fn near_whole(cells: f64) -> f64 {
-    if (cells - cells.round()).abs() < 1e-6 { cells.round() } else { cells }
-}
-
 /// The factor of each cell.
 fn factors(law: &Wear) -> crate::operator::Bed<'_> {
     crate::operator::Bed { scale: 1.0, cells: law.map.as_ref().and_then(|map| map.as_slice()) }
@@ -208,7 +201,7 @@ impl Process for Wearing {
             Sliding::Motion => {
                 self.offset = self.offset_at(step.instant.time);
                 let slopes = self.depth.add_to(gap.own_mut(), self.offset);
-                gap.worn_slopes = Some(slopes);
+                gap.add_slopes(slopes);
             }
         }
         let scale = self.law.total() * self.law.distance(&self.simulation, step.start, step.instant.time);

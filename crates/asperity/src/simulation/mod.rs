@@ -79,6 +79,8 @@ pub struct Simulation {
     pub hardness_map: Option<Array2<f64>>,
     /// What remains of the flattening at the hardness after unloading.
     pub plasticity: Plasticity,
+    /// Whether dents that stay are those of the body that slides, and go with it; else they stay on the grid.
+    pub dents_move: bool,
     /// What is prescribed; a [`Loading`] becomes a programme by `into()`.
     pub loading: Programme,
     /// When the state is computed.
@@ -117,6 +119,7 @@ impl Simulation {
             hardness: f64::INFINITY,
             hardness_map: None,
             plasticity: Plasticity::default(),
+            dents_move: false,
             loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } }.into(),
             times: TimeGrid::Uniform { end: 1.0, steps: 1 },
             include: vec![],
@@ -195,8 +198,8 @@ impl Simulation {
             + 8 * n
             + has(remembers || flattens, 8 * n)
             + history::bytes(self)
-            // the gap with its dents
-            + has(flattens, 8 * n)
+            // the gap with its dents, and the dents by themselves
+            + has(flattens, if self.motion.is_some() { 3 } else { 1 } * 8 * n)
             + self.traction.as_ref().map_or(0, |law| TractionSolver::bytes(&**law, grid))
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
             + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
@@ -235,6 +238,13 @@ impl Simulation {
     /// all bodies lie on a rigid base.
     pub fn is_up_to_a_constant(&self) -> bool {
         self.grid.is_line() && self.boundary == Boundary::Free && self.kernel.depth().is_none()
+    }
+
+    /// Whether bodies that move lose work: they remember what pressed them, or are ploughed.
+    pub(crate) fn loses(&self) -> bool {
+        self.layers.is_some()
+            || self.plasticity == Plasticity::Accumulate
+            || self.parts().any(Creep::remembers)
     }
 
     /// The least and the largest cut-off of a cell \[Pa\].

@@ -113,10 +113,10 @@ impl Simulation {
         } else if self.scheme == Scheme::Direct && is_energy {
             "one that is no energy. Energies need the springs and dashpots of the material, which scheme = \"direct\" does not \
              use; set time.scheme to \"linear\" or \"constant\""
-        } else if self.tangential.is_some() && is_energy {
-            "one that is no energy: the account of the bodies leaves out what tangential tractions do. Take slip_work, the \
-             work of friction"
-        } else if self.layers.is_some() && (is_energy || quantity == Quantity::ContactStiffness) {
+        } else if self.tangential.as_ref().is_some_and(|law| law.is_coupled()) && is_energy {
+            "one that is no energy where pressure and tangential tractions act on each other: the account of the bodies leaves \
+             that out. Take slip_work, the work of friction, or friction.coupling = \"neglect\""
+        } else if self.layers.is_some() && (of_displacements || quantity == Quantity::ContactStiffness) {
             "one that is solved for layers that creep differently. Leave it out, or give all layers and bodies the same relative \
              creep"
         } else if quantity == Quantity::ContactStiffness && self.traction.is_some() {
@@ -244,9 +244,7 @@ impl Simulation {
         let scheme = format!("{:?}", self.scheme).to_lowercase();
         require(self.scheme == Scheme::Linear, "time.scheme", "scheme", scheme, "linear")?;
         let expected = "constant. Hold it constant, or give all layers the same relative creep";
-        require(self.thermal.is_empty(), "temperature", "temperature", "not constant".into(), expected)?;
-        let expected = "none: the contact stays in its place";
-        require(self.motion.is_none(), "motion", "motion", "given".into(), expected)
+        require(self.thermal.is_empty(), "temperature", "temperature", "not constant".into(), expected)
     }
 
     fn has_traction_with(&self, quantity: Quantity) -> bool {

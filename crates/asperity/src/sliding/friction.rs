@@ -151,8 +151,8 @@ pub(crate) struct ContactForces<'a> {
     /// Undeformed gap and displacement c U; a constant does not count.
     pub(crate) gap: &'a [f64],
     pub(crate) compliance: f64,
-    /// Whether the bodies remember anything. Those that do not lose nothing: what the sums are then is the error of the grid.
-    pub(crate) remembers: bool,
+    /// Whether the bodies lose anything. Where they do not, what the sums are is the error of the grid.
+    pub(crate) loses: bool,
     pub(crate) velocity: f64,
     /// 1, -1 or at rest 0.
     pub(crate) sense: f64,
@@ -180,7 +180,7 @@ impl Friction {
     ) -> Friction {
         let sums = contact.sums();
         // What the sum is before anything has moved is the error of the grid.
-        let force = if contact.remembers && contact.distance != 0.0 { sums.slopes } else { 0.0 };
+        let force = if contact.loses && contact.distance != 0.0 { sums.slopes } else { 0.0 };
         let unknown = sums.edges.abs() + sums.waves.abs() + time_error * sums.size;
         Friction::new(contact, &sums, [force, held(unknown)], f64::NAN)
     }
@@ -208,7 +208,7 @@ impl Friction {
             velocity: contact.velocity,
             distance: contact.distance,
             force,
-            side: if contact.remembers { sums.side } else { 0.0 },
+            side: if contact.loses { sums.side } else { 0.0 },
             coefficient: over_load(force),
             uncertainty: if force.abs() > ROUNDING * sums.strain { unknown / force.abs() } else { 0.0 },
             moment: sums.moment,

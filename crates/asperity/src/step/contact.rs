@@ -75,6 +75,11 @@ impl StepContact {
         }
     }
 
+    /// Whether U of a known state is that of the operator of the step.
+    pub(super) fn keeps_operator(&self) -> bool {
+        !self.changes
+    }
+
     /// Where the operator is another one in each step: U of a known state under the present one; the convolutions that it took.
     pub(super) fn refresh(&mut self, known: &mut ContactState) -> usize {
         if !self.changes {

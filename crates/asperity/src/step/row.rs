@@ -165,7 +165,8 @@ impl<'a> Step<'a> {
         let sum =
             |of: fn(&dyn Process) -> f64| self.processes.iter().map(|process| of(&**process)).sum::<f64>();
         let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)? + attraction;
-        let energies = kept + energy(Quantity::FlatteningWork)? + sum(|process| process.worn_work());
+        let rubbed = self.slip_row().map_or(0.0, |row| row.work);
+        let energies = kept + energy(Quantity::FlatteningWork)? + sum(|process| process.worn_work()) + rubbed;
         // Surfaces that jump into contact or off it lose energy besides, and gain none.
         let error = match adheres {
             true => sum(|process| process.unknown_work()).max(energies - work),

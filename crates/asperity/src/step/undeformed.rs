@@ -13,8 +13,8 @@ pub(crate) struct UndeformedGap {
     before: Option<Vec<f64>>,
     /// By what it recedes in the step under way because of the pressure at its end.
     pub(crate) recession: Recession,
-    /// Slopes of what wear has added to the parts that move.
-    pub(crate) worn_slopes: Option<Slopes>,
+    /// Slopes of what wear and dents have added to the parts that move.
+    pub(crate) own_slopes: Option<Slopes>,
 }
 
 impl UndeformedGap {
@@ -24,7 +24,7 @@ impl UndeformedGap {
             own: None,
             before: None,
             recession: Recession::default(),
-            worn_slopes: None,
+            own_slopes: None,
         }
     }
 
@@ -78,6 +78,14 @@ impl UndeformedGap {
             }
         }
         self.recession = recession;
+    }
+
+    /// Something has changed the parts that move by a field of these slopes.
+    pub(crate) fn add_slopes(&mut self, slopes: Slopes) {
+        self.own_slopes = Some(match self.own_slopes.take() {
+            Some(own) => own.and(&slopes),
+            None => slopes,
+        });
     }
 
     /// To be changed.

@@ -177,8 +177,10 @@ impl Stepper {
             Prescribed::Load(load) => (sum(&to.pressure) * grid.cell_area() / load - 1.0).abs() <= SAME_LOAD,
             Prescribed::Approach(_) => true,
         };
-        let is_known =
-            boundary == Boundary::Periodic && has_load && to.is_precise(self.contact.options.tolerance);
+        let is_known = boundary == Boundary::Periodic
+            && has_load
+            && to.is_precise(self.contact.options.tolerance)
+            && self.contact.keeps_operator();
         Some(if is_known { Start::Displacement { feasible: true } } else { Start::Pressure })
     }
 

@@ -6,7 +6,7 @@ use ndarray::Array2;
 use super::recession::depth;
 use super::{Recession, Wear};
 use crate::grid::{Boundary, Grid};
-use crate::process::roll;
+use crate::process::carry;
 use crate::sliding::Slopes;
 
 /// Worn depths \[m\] of the body, in its own frame, and of the counterbody, in that of the grid; empty where it does not wear.
@@ -44,7 +44,7 @@ impl Depth {
         } else if !own.is_empty() {
             let mut step: Vec<f64> = zeros(pressure.len());
             each(&mut step, (pressure, recession.per_pressure()), |z, (p, k)| *z = body * of(p, k));
-            let step = moved(&self.grid, self.boundary, offset.map(|cells| -cells), &step);
+            let step = carry(&self.grid, self.boundary, offset.map(|cells| -cells), &step);
             each(own, &step[..], |z, step| *z += step);
         }
         let cells = (pressure, before, recession.per_pressure());
@@ -56,7 +56,7 @@ impl Depth {
     fn on_grid(&self, offset: [f64; 2]) -> Vec<f64> {
         match &self.of_bodies[0] {
             field if field.is_empty() => zeros(self.grid.len()),
-            field => moved(&self.grid, self.boundary, offset, field),
+            field => carry(&self.grid, self.boundary, offset, field),
         }
     }
 
@@ -75,23 +75,6 @@ impl Depth {
     pub(crate) fn largest(&self) -> f64 {
         self.of_bodies.iter().flatten().copied().fold(0.0, f64::max)
     }
-}
-
-/// A field moved by these cells along x and y, between cells linearly; beyond the ends of a free domain there is 0.
-fn moved(grid: &Grid, boundary: Boundary, offset: [f64; 2], field: &[f64]) -> Vec<f64> {
-    let whole = offset.map(f64::floor);
-    let part = [0, 1].map(|axis| offset[axis] - whole[axis]);
-    let (mut sum, mut corner): (Vec<f64>, Vec<f64>) = (zeros(field.len()), zeros(field.len()));
-    for [i, j] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
-        let weight = |next: i32, part: f64| if next == 1 { part } else { 1.0 - part };
-        let weight = weight(i, part[0]) * weight(j, part[1]);
-        if weight != 0.0 {
-            let shift = [whole[0] as isize + i as isize, whole[1] as isize + j as isize];
-            roll(grid.shape(), boundary, shift, field, &mut corner);
-            each(&mut sum, &corner[..], |to, from| *to += weight * from);
-        }
-    }
-    sum
 }
 
 #[cfg(test)]

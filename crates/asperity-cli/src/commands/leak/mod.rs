@@ -11,7 +11,7 @@ use asperity_io::answer::{Units, Validity};
 use asperity_io::case::leak as checked;
 use asperity_io::choice;
 use asperity_io::finding;
-use asperity_io::leakage::{Beside, Leak, LeakError, LeakHistory, compute, settings, store, words};
+use asperity_io::leakage::{Beside, Leak, LeakError, LeakHistory, compute, settings, store};
 use asperity_io::store::{LeakTable, Reader};
 use serde_json::{Map, Value, json};
 
@@ -162,13 +162,13 @@ fn text(history: &LeakHistory, units: &Units) -> String {
         Validity::Holds => column("leak_resolved")[n] == 0.0,
         of => of.is_valid(),
     };
-    let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), "time");
+    let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), table.axis.name());
     if fluid {
         text += &format!("{:>34}", "leak rate");
     }
     text += &format!("{:>15}{:>15}{:>14}\n", "hydraulic gap", "critical gap", "trapped area");
     for n in 0..table.len() {
-        text += &format!("{:>12}", units.time(times[n]));
+        text += &format!("{:>12}", units.coordinate(table.axis.at(times[n])));
         let tight = column("percolates")[n] == 0.0;
         let taken = !validity[n].is_valid();
         let mark = if is_doubted(n) { " ?" } else { "  " };
@@ -200,7 +200,7 @@ fn text(history: &LeakHistory, units: &Units) -> String {
     if let Some(patch) = history.patch(units) {
         text += &format!("the leak rate is {patch}\n");
     }
-    let tight = words::tight(times, column("percolates"), units);
+    let tight = history.tight(units);
     if !tight.is_empty() && last.is_valid() {
         text += &format!("{}\n", history.validity("tight_from").mark(tight));
     }
@@ -211,10 +211,16 @@ fn text(history: &LeakHistory, units: &Units) -> String {
 fn tensors(table: &LeakTable) -> String {
     let Some(all) = table.get("conductance") else { return String::new() };
     let times = table.get("leak_time").unwrap_or_default();
-    let mut text =
-        format!("\nconductance [m3]\n{:>12}{:>14}{:>14}{:>14}{:>14}\n", "time", "xx", "xy", "yx", "yy");
+    let mut text = format!(
+        "\nconductance [m3]\n{:>12}{:>14}{:>14}{:>14}{:>14}\n",
+        table.axis.name(),
+        "xx",
+        "xy",
+        "yx",
+        "yy"
+    );
     for (time, tensor) in times.iter().zip(all.chunks(4)) {
-        text += &format!("{:>12}", quantity(*time, "s"));
+        text += &format!("{:>12}", quantity(*time, table.axis.unit()));
         tensor.iter().for_each(|entry| text += &format!("{entry:>14.4e}"));
         text.push('\n');
     }

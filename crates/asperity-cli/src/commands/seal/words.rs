@@ -1,5 +1,6 @@
 //! The answers about a seal in words.
 
+use asperity::drive::Coordinate;
 use asperity::seal::{Opens, SealState};
 use asperity_io::answer::Units;
 use asperity_io::leakage::words::tight;
@@ -187,9 +188,9 @@ impl Words<'_> {
     /// "closes between t = 1 s and 10 s"; none where the leak is not known at every time.
     fn over_time(&self) -> Option<String> {
         let list = &self.answer.by_time;
-        let times: Vec<f64> = list.iter().map(|over| over.at).collect();
+        let times: Vec<Coordinate> = list.iter().map(|over| Coordinate::Time(over.at)).collect();
         let open: Vec<f64> = list.iter().map(|over| f64::from(u8::from(over.leak.largest > 0.0))).collect();
-        let ends = [times.first()?, times.last()?].map(|time| self.units.time(*time));
+        let ends = [times.first()?, times.last()?].map(|time| self.units.coordinate(*time));
         Some(match tight(&times, &open, self.units) {
             _ if list.iter().any(|over| !over.leak.mean.is_finite()) => return None,
             words if !words.is_empty() => words,

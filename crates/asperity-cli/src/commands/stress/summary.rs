@@ -14,7 +14,7 @@ pub fn object(below: &Below, written: &[String]) -> Value {
     object.insert("body".into(), json!(set.body));
     object.insert("poisson".into(), json!(set.poisson));
     object.insert("depths".into(), json!(set.depths));
-    object.insert("times".into(), over(&|instant| json!(instant.time)));
+    object.insert(below.axis.plural().into(), over(&|instant| json!(instant.time)));
     object.insert("loads".into(), over(&|instant| json!(instant.load)));
     for series in set.scalars() {
         object.insert(series.name.into(), over(&|instant| json!(below.number(instant, series.name))));
@@ -67,7 +67,8 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
     };
     let maxima =
         [("von Mises", "max_mises"), ("shear (s1 - s3)/2", "max_tresca"), ("principal", "max_tension")];
-    let mut head = vec!["time".to_owned(), "load".to_owned()];
+    let axis = below.axis;
+    let mut head = vec![axis.name().to_owned(), "load".to_owned()];
     head.extend(maxima.iter().flat_map(|(name, _)| [format!("largest {name}"), "depth".to_owned()]));
     // What is rounding beside the largest stress is 0.
     let noise =
@@ -76,11 +77,12 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         "Pa" if value.abs() < noise => number(0.0, unit),
         _ => number(value, unit),
     };
+    let when = |instant: &Instant| format!("{} = {}", axis.symbol(), number(instant.time, axis.unit()));
     let extra = set.extra_scalars();
     let force = if set.line { "N/m" } else { "N" };
     head.extend(extra.iter().map(|series| series.name.replace('_', " ")));
     let line = |instant: &&Instant| {
-        let mut words = vec![number(instant.time, "s"), number(instant.load, force)];
+        let mut words = vec![number(instant.time, axis.unit()), number(instant.load, force)];
         for (_, key) in maxima {
             words.push(number(below.number(instant, key), "Pa"));
             words.push(number(below.number(instant, &format!("{key}_depth")), "m"));
@@ -90,7 +92,8 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
     };
     text += &columns(&std::iter::once(head).chain(instants.iter().map(line)).collect::<Vec<_>>(), "  ");
     if instants.len() < below.instants.len() {
-        let words = format!("{} of {} times; --json prints all", instants.len(), below.instants.len());
+        let words =
+            format!("{} of {} {}; --json prints all", instants.len(), below.instants.len(), axis.plural());
         text += &format!("  ({words})\n");
     }
     text.push('\n');
@@ -100,7 +103,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         for (name, key) in maxima {
             let [x, y] = place(key);
             let y = if set.line { String::new() } else { format!(", y = {y}") };
-            text += &format!("  largest {name} at t = {}: x = {x}{y}\n", number(instant.time, "s"));
+            text += &format!("  largest {name} at {}: x = {x}{y}\n", when(instant));
         }
         text.push('\n');
     }
@@ -112,7 +115,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         );
     }
     if let Some(instant) = shown.filter(|_| !drawn) {
-        text += &format!("largest stress by depth at t = {}\n", number(instant.time, "s"));
+        text += &format!("largest stress by depth at {}\n", when(instant));
         let profiles = set.profiles();
         let head = profiles.iter().map(|series| {
             series.name.trim_end_matches("_by_depth").replace('_', " ").replace("tresca", "shear (s1 - s3)/2")
@@ -126,7 +129,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         text.push('\n');
     }
     if let (Some(limit), Some(first)) = (set.yield_stress, first_yield(below)) {
-        text += &format!("yield stress {}: {}\n", quantity(limit, "Pa"), first.sentence(set));
+        text += &format!("yield stress {}: {}\n", quantity(limit, "Pa"), first.sentence(below));
         text += "(the hardness, which limits the pressure, is another number: about 2.8 times the yield stress of a metal)\n";
     }
     text

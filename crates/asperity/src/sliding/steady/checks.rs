@@ -4,7 +4,7 @@ use super::SteadyMotion;
 use crate::error::{Error, Of, Result, require};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
-use crate::simulation::Simulation;
+use crate::simulation::{Plasticity, Simulation};
 use crate::sliding::{ShearStress, Streaming};
 
 impl SteadyMotion {
@@ -42,6 +42,12 @@ impl SteadyMotion {
             "body of a steady state of motion",
             "one that adheres or that a fluid acts on",
             "one without: take a motion in time",
+        )?;
+        require(
+            simulation.plasticity == Plasticity::Cap,
+            "plasticity of a steady state of motion",
+            "accumulate",
+            "cap: dents that stay are made in time",
         )?;
         require(
             simulation.hardness_map.is_none(),

@@ -248,7 +248,7 @@ impl Steady {
             contact: &self.state.pressure,
             gap: problem.gap,
             compliance: problem.compliance,
-            remembers: self.streaming.branches().next().is_some(),
+            loses: self.streaming.branches().next().is_some(),
             velocity,
             sense: 1.0,
             distance: 0.0,

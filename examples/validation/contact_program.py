@@ -12,7 +12,7 @@ import asperity as asp
 
 TITLE = "Examples of the program CONTACT"
 BESIDE = "another program"
-LIMIT = "steady rolling with friction is not in asperity"
+LIMIT = "no steady rolling with friction"
 COLUMNS = ("example", "quantity", "CONTACT", "asperity")
 
 #: Below the middle of a unit square under unit pressure and a traction of 0.999 along x, nu = 0.28: depth, sxx, szz, sxz, von Mises.

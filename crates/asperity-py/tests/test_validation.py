@@ -166,3 +166,16 @@ def test_examples_of_contact_are_reproduced():
     assert abs(stuck - 225) <= 10 and abs(slipping - 696) <= 10
     # Four digits of at most 1.349, and its square is 1e-4 beside the middle: the traction's part of xx, which is odd, is 2e-4 there.
     np.testing.assert_allclose(contact_program.subsurf(), contact_program.SUBSURF[:, 1:], rtol=0, atol=7e-4)
+
+
+def test_after_a_part_of_the_load_is_off_the_area_only_grows():
+    # What the page says of any linear material, and what rough PMMA does not: Li, Brenner and Frerot, arXiv 2511.19402.
+    asp = area.asp
+    band = dict(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.1, longest=0.25e-3, shortest=0.12e-3)
+    surface = asp.Surface.self_affine(**band, seed=1)
+    fractional = asp.FractionalZener(shear_equilibrium=1e6, shear_instantaneous=30e6, time=1.0, order=0.4, poisson=0.5, window=(0.1, 100.0))
+    held = asp.table([(0.0, 4e4), (10.0, 4e4), (10.0, 2e4), (40.0, 2e4)])
+    result = asp.solve(surface, fractional, pressure=held, times=asp.uniform(40.0, 80), boundary="periodic", fields=[])
+    before, after = np.flatnonzero(result.time == 10.0)
+    assert result.contact_area[after] < result.contact_area[before]
+    assert (np.diff(result.contact_area[after:]) >= 0).all() and result.contact_area[-1] > result.contact_area[after]

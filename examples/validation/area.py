@@ -28,7 +28,13 @@ def compared():
     for hurst in (0.5, 0.8):
         surfaces = [
             asp.Surface.self_affine(
-                cells=(CELLS, CELLS), size=(SIDE, SIDE), hurst=hurst, rms_gradient=GRADIENT, longest=SIDE / 4, shortest=8 * SIDE / CELLS, seed=seed
+                cells=(CELLS, CELLS),
+                size=(SIDE, SIDE),
+                hurst=hurst,
+                rms_gradient=GRADIENT,
+                longest=SIDE / 4,
+                shortest=8 * SIDE / CELLS,
+                seed=seed,
             )
             for seed in SEEDS
         ]
@@ -55,7 +61,14 @@ def draw(figure):
     for hurst, marker, colour in ((0.5, "o", "#1f5fa8"), (0.8, "s", "#c1541c")):
         mine = [row for row in compared() if row[0] == hurst]
         axes.errorbar(
-            [row[1] for row in mine], [row[2] for row in mine], [row[3] for row in mine], marker=marker, ms=4, capsize=2, color=colour, label=f"H = {hurst:g}"
+            [row[1] for row in mine],
+            [row[2] for row in mine],
+            [row[3] for row in mine],
+            marker=marker,
+            ms=4,
+            capsize=2,
+            color=colour,
+            label=f"H = {hurst:g}",
         )
     axes.axhline(BUSH, color="black", ls="--", lw=0.8, label="Bush, Gibson, Thomas")
     axes.axhline(PERSSON, color="black", ls=":", lw=0.8, label="Persson")

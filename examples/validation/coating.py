@@ -13,7 +13,15 @@ import asperity as asp
 TITLE = "Oxide on silicon: stiffness over depth"
 BESIDE = "experiment"
 LIMIT = "a film thinner by what the tip displaces; pile-up"
-COLUMNS = ("depth [nm]", "a/t", "measured S/1.034 [kN/m]", "scatter", "predicted S [kN/m]", "predicted / measured", "with the film thinner by h_c/3")
+COLUMNS = (
+    "depth [nm]",
+    "a/t",
+    "measured S/1.034 [kN/m]",
+    "scatter",
+    "predicted S [kN/m]",
+    "predicted / measured",
+    "with the film thinner by h_c/3",
+)
 
 THICKNESS = 500e-9
 #: Depth [nm], stiffness [N/m], its standard deviation over the tests, contact radius of the instrument [nm].
@@ -42,11 +50,13 @@ DIAMOND = asp.Elastic(young=1141e9, poisson=0.07)
 
 
 def stiffness(radius, body):
-    """dW/dd of a cone of diamond on the body where the contact has that radius; the material below has yielded, the unloading is elastic."""
+    """dW/dd of a cone of diamond on the body at that contact radius; what has yielded unloads elastically."""
     cone = asp.Surface.cone(cells=(64, 64), size=(3 * radius, 3 * radius), slope=SLOPE)
     approach = 0.5 * np.pi * radius * SLOPE
     for _ in range(3):
-        pressed = asp.solve(cone, [body, DIAMOND], approach=approach, times=[1.0], quantities=["contact_stiffness"], fields=[])
+        pressed = asp.solve(
+            cone, [body, DIAMOND], approach=approach, times=[1.0], quantities=["contact_stiffness"], fields=[]
+        )
         found = float(np.sqrt(pressed.contact_area_corrected[-1] / np.pi))
         approach *= radius / found
     return float(pressed.contact_stiffness[-1]) * radius / found
@@ -58,7 +68,7 @@ def coated(thickness):
 
 @cache
 def compared():
-    """Measured stiffness [N/m] at each depth, predicted, and predicted with what the indenter displaces taken off the film."""
+    """Stiffness [N/m] at each depth: measured, predicted, predicted with what the tip displaces taken off."""
     radii = MEASURED[:, 3] * 1e-9
     predicted = np.array([stiffness(a, coated(THICKNESS)) for a in radii])
     # Contact depth of the cone: a times its slope; effective thickness t - h_c/3, as the NIMS toolbox has it.
@@ -74,7 +84,15 @@ def bounds():
 
 def rows():
     return [
-        (f"{depth:.1f}", f"{a * 1e-9 / THICKNESS:.2f}", f"{m / 1e3:.1f}", f"{100 * sd / s:.1f} %", f"{p / 1e3:.1f}", f"{p / m:.3f}", f"{t / m:.3f}")
+        (
+            f"{depth:.1f}",
+            f"{a * 1e-9 / THICKNESS:.2f}",
+            f"{m / 1e3:.1f}",
+            f"{100 * sd / s:.1f} %",
+            f"{p / 1e3:.1f}",
+            f"{p / m:.3f}",
+            f"{t / m:.3f}",
+        )
         for (depth, s, sd, a), m, p, t in zip(MEASURED, *compared())
     ]
 
@@ -90,14 +108,27 @@ def draw(figure):
     measured, predicted, thinner = compared()
     left, right = figure.subplots(1, 2)
     depth, scatter = MEASURED[:, 0], MEASURED[:, 2] / BERKOVICH
-    left.errorbar(depth, measured / 1e3, scatter / 1e3, fmt="o", ms=4, color="black", capsize=2, label="measured, S/1.034")
+    left.errorbar(
+        depth, measured / 1e3, scatter / 1e3, fmt="o", ms=4, color="black", capsize=2, label="measured, S/1.034"
+    )
     left.plot(depth, predicted / 1e3, color="#1f5fa8", label="oxide on silicon, predicted")
     for one, style, name in zip(bounds(), (":", "--"), ("oxide alone", "silicon alone")):
         left.plot(depth, one / 1e3, style, color="#888888", label=name)
     left.set(xlabel="depth [nm]", ylabel="stiffness [kN/m]")
     left.legend(frameon=False, fontsize=8)
-    right.errorbar(MEASURED[:, 3] * 1e-9 / THICKNESS, predicted / measured, scatter / measured, fmt="o", ms=4, color="#1f5fa8", capsize=2, label="as deposited")
-    right.plot(MEASURED[:, 3] * 1e-9 / THICKNESS, thinner / measured, "x", ms=5, color="#c1541c", label="film thinner by h_c/3")
+    right.errorbar(
+        MEASURED[:, 3] * 1e-9 / THICKNESS,
+        predicted / measured,
+        scatter / measured,
+        fmt="o",
+        ms=4,
+        color="#1f5fa8",
+        capsize=2,
+        label="as deposited",
+    )
+    right.plot(
+        MEASURED[:, 3] * 1e-9 / THICKNESS, thinner / measured, "x", ms=5, color="#c1541c", label="film thinner by h_c/3"
+    )
     right.axhline(1.0, color="black", lw=0.8)
     right.set(xlabel="contact radius / thickness", ylabel="predicted / measured", ylim=(0.85, 1.1))
     right.legend(frameon=False, fontsize=8)

@@ -1,7 +1,8 @@
-"""Examples that the program CONTACT publishes with its results: a ball that is shifted, Spence's compression, stress below a square.
+"""Examples that the program CONTACT publishes with its results: a shifted ball, Spence's compression, a loaded square.
 
-github.com/eve70a/CONTACT (Apache-2.0), examples `cattaneo`, `spence35` and `subsurf` with their reference outputs of 2023; after J. J. Kalker,
-Three-dimensional elastic bodies in rolling contact (1990), section 5.2.1.1 and figures 5.20 and 5.25.
+github.com/eve70a/CONTACT (Apache-2.0), examples `cattaneo`, `spence35` and `subsurf` with their reference outputs of
+2023; after J. J. Kalker, Three-dimensional elastic bodies in rolling contact (1990), section 5.2.1.1 and figures 5.20
+and 5.25.
 """
 
 from functools import cache
@@ -15,7 +16,8 @@ BESIDE = "another program"
 LIMIT = "no steady rolling with friction"
 COLUMNS = ("example", "quantity", "CONTACT", "asperity")
 
-#: Below the middle of a unit square under unit pressure and a traction of 0.999 along x, nu = 0.28: depth, sxx, szz, sxz, von Mises.
+#: Below the middle of a unit square under unit pressure and a traction of 0.999 along x, nu = 0.28: depth, sxx, szz,
+#: sxz, von Mises.
 SUBSURF = np.array(
     [
         [0.1, -0.5559, -0.9943, -0.7364, 1.349],
@@ -50,7 +52,7 @@ def cattaneo():
 
 @cache
 def spence():
-    """A soft sphere pressed on a rigid flat in 35 stages; it spreads and slips outwards. Pressure and traction act on each other."""
+    """A soft sphere pressed on a rigid flat in 35 stages, which spreads and slips outwards."""
     side = 45 * 0.2e-3
     ball = asp.Surface.sphere(cells=(45, 45), size=(side, side), radius=1e-3 / (2 * 0.004116))
     return asp.solve(
@@ -69,7 +71,14 @@ def spence():
 def subsurf():
     """xx, zz, xz and von Mises below the middle, at the depths of the table."""
     square = np.ones((5, 5))
-    below = asp.stress(square, size=(1.0, 1.0), poisson=0.28, depths=SUBSURF[:, 0], boundary="free", tractions=[0.999 * square, 0.0 * square])
+    below = asp.stress(
+        square,
+        size=(1.0, 1.0),
+        poisson=0.28,
+        depths=SUBSURF[:, 0],
+        boundary="free",
+        tractions=[0.999 * square, 0.0 * square],
+    )
     return np.array([part[:, 2, 2] for part in (below.xx, below.zz, below.xz, below.mises)]).T
 
 
@@ -93,7 +102,14 @@ def rows():
     ]
     for at in (0, 3, 5):
         depth, _, zz, _, mises = SUBSURF[at]
-        found.append(("subsurf", f"σzz, von Mises at z = {depth:g}", f"{zz:.4f}, {mises:.4g}", f"{subsurf()[at, 1]:.4f}, {subsurf()[at, 3]:.4g}"))
+        found.append(
+            (
+                "subsurf",
+                f"σzz, von Mises at z = {depth:g}",
+                f"{zz:.4f}, {mises:.4g}",
+                f"{subsurf()[at, 1]:.4f}, {subsurf()[at, 3]:.4g}",
+            )
+        )
     return found
 
 

@@ -1,7 +1,8 @@
 """Pressure flow factor of rough gaps beside the formula of Patir and Cheng.
 
-N. Patir & H. S. Cheng, J. Lubr. Technol. 100 (1978) 12: isotropic Gaussian roughness, phi = 1 - 0.90 exp(-0.56 h/s), a fit to their finite
-differences. h is the distance of the mean planes, s the rms height; where the surfaces overlap the gap is closed.
+N. Patir & H. S. Cheng, J. Lubr. Technol. 100 (1978) 12: isotropic Gaussian roughness, phi = 1 - 0.90 exp(-0.56 h/s), a
+fit to their finite differences. h is the distance of the mean planes, s the rms height; where the surfaces overlap the
+gap is closed.
 """
 
 from functools import cache
@@ -36,7 +37,13 @@ def compared():
     """h/s, formula, mean and standard deviation of the prediction."""
     surfaces = [
         asp.Surface.self_affine(
-            cells=(CELLS, CELLS), size=(SIDE, SIDE), hurst=0.8, rms_height=HEIGHT, longest=SIDE / 6, shortest=8 * SIDE / CELLS, seed=seed
+            cells=(CELLS, CELLS),
+            size=(SIDE, SIDE),
+            hurst=0.8,
+            rms_height=HEIGHT,
+            longest=SIDE / 6,
+            shortest=8 * SIDE / CELLS,
+            seed=seed,
         )
         for seed in SEEDS
     ]
@@ -48,7 +55,10 @@ def compared():
 
 
 def rows():
-    return [(f"{ratio:g}", f"{stated:.3f}", f"{mean:.3f}", f"{sd:.3f}", f"{mean / stated:.2f}") for ratio, stated, mean, sd in compared()]
+    return [
+        (f"{ratio:g}", f"{stated:.3f}", f"{mean:.3f}", f"{sd:.3f}", f"{mean / stated:.2f}")
+        for ratio, stated, mean, sd in compared()
+    ]
 
 
 def summary():

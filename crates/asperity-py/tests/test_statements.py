@@ -1,4 +1,4 @@
-"""What README, paper and the files for archives say that the program has, has not, and how many, is what the program says itself."""
+"""What README, paper and the files for archives say that the program has, and has not, is what the program says."""
 
 import json
 import os
@@ -12,7 +12,16 @@ import pytest
 ROOT = Path(__file__).parents[3]
 PAPER = "docs/paper-joss/paper.md"
 #: Documents that say in short what the program is.
-DOCUMENTS = ["README.md", "crates/asperity-py/README.md", "docs/index.md", "CITATION.cff", "codemeta.json", ".zenodo.json", "CHANGELOG.md", PAPER]
+DOCUMENTS = [
+    "README.md",
+    "crates/asperity-py/README.md",
+    "docs/index.md",
+    "CITATION.cff",
+    "codemeta.json",
+    ".zenodo.json",
+    "CHANGELOG.md",
+    PAPER,
+]
 #: Words for a capability, and the table of a case that has it.
 TABLES = {
     r"adhesion|adheres?|adhesive": "adhesion",
@@ -36,7 +45,9 @@ if not (ROOT / "Cargo.toml").exists():
 
 
 def command(*words):
-    program = [os.environ["ASPERITY_COMMAND"]] if "ASPERITY_COMMAND" in os.environ else [sys.executable, "-m", "asperity"]
+    program = (
+        [os.environ["ASPERITY_COMMAND"]] if "ASPERITY_COMMAND" in os.environ else [sys.executable, "-m", "asperity"]
+    )
     return subprocess.run([*program, *words], check=True, capture_output=True, encoding="utf-8").stdout
 
 
@@ -121,4 +132,8 @@ def test_what_the_comparison_says_that_asperity_has_is_there(tables):
     assert stated["elastoplastic residual stress"] == "no"
     schema = command("schema")
     # A plasticity that leaves stress would be another choice than these two.
-    assert re.search(r'"cap"', schema) and re.search(r'"accumulate"', schema) and "residual" not in json.dumps(json.loads(schema)["properties"])
+    assert (
+        re.search(r'"cap"', schema)
+        and re.search(r'"accumulate"', schema)
+        and "residual" not in json.dumps(json.loads(schema)["properties"])
+    )

@@ -1,4 +1,4 @@
-"""docs/validation.md says what the scripts in examples/validation compute, and the program is as close to the measurements as it says."""
+"""docs/validation.md says what the scripts in examples/validation compute, and the program is as close as it says."""
 
 import re
 import sys
@@ -98,7 +98,9 @@ def test_the_stiffness_of_the_coated_body_is_that_measured():
 
 
 def test_the_stiffness_without_a_film_is_that_of_a_half_space():
-    bare = coating.asp.Body(layers=[coating.asp.Layer(thickness=500e-9, material=coating.SILICON)], base=coating.SILICON)
+    bare = coating.asp.Body(
+        layers=[coating.asp.Layer(thickness=500e-9, material=coating.SILICON)], base=coating.SILICON
+    )
     exact = 2 * 200e-9 / ((1 - 0.07**2) / 1141e9 + (1 - 0.22**2) / 165e9)
     # 21 cells to a radius: an area is known to a part of its outermost ring.
     assert abs(coating.stiffness(200e-9, bare) / exact - 1) < 5e-3
@@ -106,7 +108,8 @@ def test_the_stiffness_without_a_film_is_that_of_a_half_space():
 
 def test_conductances_are_those_of_the_correlations():
     for _, plastic, share, stated, mean, scatter in conductance.compared():
-        # A quarter: the correlations themselves scatter so about measurements; beyond it, the error of the mean of three surfaces.
+        # A quarter: the correlations themselves scatter so about measurements. Beyond it, the error of the mean of
+        # three surfaces.
         assert abs(mean / stated - 1) < 0.25 + scatter / mean / np.sqrt(3), (plastic, share)
 
 
@@ -164,7 +167,8 @@ def test_examples_of_contact_are_reproduced():
     stuck, slipping = contact_program.cells(soft)
     # A ring of one cell is 100 cells: the border differs by less than a tenth of it.
     assert abs(stuck - 225) <= 10 and abs(slipping - 696) <= 10
-    # Four digits of at most 1.349, and its square is 1e-4 beside the middle: the traction's part of xx, which is odd, is 2e-4 there.
+    # Four digits of at most 1.349, and its square is 1e-4 beside the middle: the traction's part of xx, which is odd,
+    # is 2e-4 there.
     np.testing.assert_allclose(contact_program.subsurf(), contact_program.SUBSURF[:, 1:], rtol=0, atol=7e-4)
 
 
@@ -173,7 +177,9 @@ def test_after_a_part_of_the_load_is_off_the_area_only_grows():
     asp = area.asp
     band = dict(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.1, longest=0.25e-3, shortest=0.12e-3)
     surface = asp.Surface.self_affine(**band, seed=1)
-    fractional = asp.FractionalZener(shear_equilibrium=1e6, shear_instantaneous=30e6, time=1.0, order=0.4, poisson=0.5, window=(0.1, 100.0))
+    fractional = asp.FractionalZener(
+        shear_equilibrium=1e6, shear_instantaneous=30e6, time=1.0, order=0.4, poisson=0.5, window=(0.1, 100.0)
+    )
     held = asp.table([(0.0, 4e4), (10.0, 4e4), (10.0, 2e4), (40.0, 2e4)])
     result = asp.solve(surface, fractional, pressure=held, times=asp.uniform(40.0, 80), boundary="periodic", fields=[])
     before, after = np.flatnonzero(result.time == 10.0)

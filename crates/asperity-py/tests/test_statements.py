@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -123,6 +124,18 @@ def test_counts_are_those_of_the_program(pattern):
     assert stated and all(count == known for _, count in stated), f"the program has {known}: {stated}"
 
 
+def test_the_steps_of_creep_over_decades_are_those_stated(tmp_path):
+    import asperity as asp
+
+    command("run", str(ROOT / "examples/creep-decades.toml"), "--quiet", "-o", str(tmp_path / "creep.zarr"))
+    steps = len(asp.open(tmp_path / "creep.zarr")) - 1
+    for name, words in (
+        ("README.md", r"eight decades of time in (\d+) steps"),
+        ("examples/creep-decades.toml", r"in (\d+) adaptive steps"),
+    ):
+        assert re.search(words, (ROOT / name).read_text(encoding="utf-8")).group(1) == str(steps)
+
+
 def test_what_the_comparison_says_that_asperity_has_is_there(tables):
     """The rows of the README's table that are features of a case."""
     rows = re.findall(r"^\| ([^|]+) \| ([^|]+) \|", (ROOT / "README.md").read_text(encoding="utf-8"), re.M)
@@ -137,3 +150,42 @@ def test_what_the_comparison_says_that_asperity_has_is_there(tables):
         and re.search(r'"accumulate"', schema)
         and "residual" not in json.dumps(json.loads(schema)["properties"])
     )
+
+
+#: Of the README's commands: they serve until stopped, need a case of the reader, or have tests of their own.
+ELSEWHERE = ("app", "view", "seal", "verify", "reproduce")
+
+
+def test_the_commands_of_the_readme_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    section = (ROOT / "README.md").read_text(encoding="utf-8").split("\n## The command\n")[1]
+    lines = re.search(r"^```sh\n(.*?)^```", section, re.M | re.S).group(1).splitlines()
+    ran = set()
+    for line in lines:
+        words = shlex.split(line, comments=True)[1:]
+        words = words[: words.index(">")] if ">" in words else words
+        if words[0] in ELSEWHERE:
+            continue
+        words = [{"a.zarr": "my.zarr", "b.zarr": "heavier.zarr"}.get(word, word) for word in words]
+        written = command(*words)
+        if words[:1] == ["new"]:
+            # The reader's case, in fewer cells.
+            case = tmp_path / words[-1]
+            case.write_text(re.sub(r"^cells = .*", "cells = [32, 32]", case.read_text(encoding="utf-8"), flags=re.M))
+        if words[0] == "schema":
+            json.loads(written)
+        ran.add(words[0])
+    assert {
+        "run",
+        "check",
+        "converge",
+        "surface",
+        "material",
+        "show",
+        "report",
+        "plot",
+        "compare",
+        "study",
+        "export",
+    } <= ran

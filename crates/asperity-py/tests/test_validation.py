@@ -77,6 +77,15 @@ def test_the_overview_has_the_summary_of_each():
         assert all(same(a, b) for a, b in zip(line, stated, strict=True)), f"the page has {line}, computed {stated}"
 
 
+def test_the_figures_are_drawn(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr(draw, "PICTURES", tmp_path)
+    for module in draw.COMPARISONS:
+        draw.draw(module)
+        # A picture of empty axes takes 5 kB.
+        assert draw.picture(module).stat().st_size > 10_000
+
+
 def test_a_wrong_number_of_the_page_would_be_seen():
     assert same("0.98 to 1.02, -5.0e-04", "0.99 to 1.02, -5.1e-04")
     assert not same("0.98 to 1.02", "0.96 to 1.02")

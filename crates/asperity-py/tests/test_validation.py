@@ -86,6 +86,43 @@ def test_the_figures_are_drawn(tmp_path, monkeypatch):
         assert draw.picture(module).stat().st_size > 10_000
 
 
+#: A sentence of a section, and its number, computed.
+SENTENCES = (
+    (
+        coating,
+        r"The rest, (\d+) % at the deepest point",
+        lambda: 100 * (1 - (coating.compared()[2] / coating.compared()[0])[-1]),
+    ),
+    (coating, r"diamond (\d+) GPa and 0.07", lambda: coating.DIAMOND.young / 1e9),
+    (epdm, r"misses that of the DMA by (\d+) % rms", lambda: 100 * epdm.fitted().misfits["loss"][0]),
+    (polystyrene, r"the fit states ([\d.]+) decades for the last", lambda: polystyrene.compared()[-1][3]),
+    (rolling, r"the exponent is ([\d.]+\d)", rolling.exponent),
+    (rolling, r"from (\d+) relaxation times", lambda: len(rolling.TIMES)),
+    (area, r"√\(8/π\) = ([\d.]+) by Persson", lambda: area.PERSSON),
+    (area, r"√\(2π\) = ([\d.]+) by that of Bush", lambda: area.BUSH),
+    (area, r"([\d.]+) from surface to surface at the lightest load", lambda: area.compared()[0][3]),
+    (contact_program, r"(\w+) cells of `spence35`", lambda: 921 - sum(contact_program.cells(contact_program.spence()))),
+)
+
+
+@pytest.mark.parametrize("module, words, computed", SENTENCES, ids=[words for _, words, _ in SENTENCES])
+def test_a_number_in_a_sentence_is_that_computed(module, words, computed):
+    found = re.search(words, " ".join(section(module.TITLE).split()))
+    assert found, f"the page no longer says {words}"
+    stated = {"four": "4"}.get(found.group(1).lower(), found.group(1))
+    # Half of its last digit, and rounding on another machine.
+    assert abs(float(stated) - float(computed())) < 0.6 * 10.0 ** -len(stated.partition(".")[2])
+
+
+def test_the_page_of_layers_says_the_same_of_the_oxide():
+    text = " ".join((ROOT / "docs/layers.md").read_text(encoding="utf-8").split())
+    within, beyond = map(int, re.search(r"right within (\d+) % up to .*?, and (\d+) % too small at 1.7", text).groups())
+    measured, predicted, _ = coating.compared()
+    off = 100 * np.abs(predicted / measured - 1)
+    thin = coating.MEASURED[:, 3] * 1e-9 < coating.THICKNESS
+    assert off[thin].max() < within + 0.5 and abs(off[-1] - beyond) < 0.6
+
+
 def test_a_wrong_number_of_the_page_would_be_seen():
     assert same("0.98 to 1.02, -5.0e-04", "0.99 to 1.02, -5.1e-04")
     assert not same("0.98 to 1.02", "0.96 to 1.02")

@@ -19,7 +19,7 @@ COLUMNS = ("body", "load", "a [mm]", "friction coefficient", "over its closed fo
 
 SHEAR, LOSS, RADIUS, VELOCITY = 1e6, 0.0075, 10e-3, 0.05
 #: Relaxation times: two to a decade keep tan d even within 1e-3 between them.
-TIMES = np.geomspace(1e-6, 1e3, 19)
+TIMES = np.geomspace(1e-5, 1e1, 13)
 STEP = np.log(TIMES[1] / TIMES[0])
 MODULUS = 4 * SHEAR
 SPHERES, CYLINDERS = (0.05, 0.2, 0.8), (20.0, 80.0)

@@ -25,6 +25,18 @@ def test_a_standard_linear_solid_is_the_zener_solid_of_the_same_relaxation():
     assert np.allclose(maxwell.creep_compliance(T), zener.creep_compliance(T), rtol=1e-12, atol=0)
 
 
+def test_a_model_that_becomes_a_sum_asks_for_its_window():
+    law = dict(time=1.0, order=0.4, poisson=0.5)
+    for made in (
+        lambda: asp.FractionalZener(shear_equilibrium=1e6, shear_instantaneous=30e6, **law),
+        lambda: asp.FractionalMaxwell(shear=1e6, **law),
+        lambda: asp.Springpot(shear=1e6, **law),
+        lambda: asp.PowerLaw(shear=1e6, alpha=0.2, poisson=0.5),
+    ):
+        with pytest.raises(asp.CaseError, match=r"window of \w+ is not given.*window=\(first, last\)"):
+            made()
+
+
 def test_a_material_gives_the_modulus_that_is_asked_for():
     # E = 2 (1 + nu) G; with a bulk modulus B, 1/E = 1/(3 G) + 1/(9 B) for creep functions. Only rounding and the conversion differ, 1e-12.
     glass = asp.Maxwell(shear=1e9, relaxation_time=2.0, poisson=0.3)

@@ -339,6 +339,9 @@ def fit_dma(given: OfDma) -> Fit:
     each other: then the storage modulus is usual, and :attr:`Fit.misfits` says how far off the other is); `loss_weight` is the
     weight of a residual of the loss modulus. The other parameters are those of :func:`fit_relaxation`.
 
+    The fit holds at the strain of the DMA. A filled rubber is linear up to about 0.2 %; beyond, it is softer and loses more (Payne
+    effect), which no linear material has.
+
     >>> import asperity as asp, numpy as np
     >>> rubber = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01), (2e6, 1.0)], poisson=0.5)
     >>> f = np.geomspace(0.01, 100, 41)

@@ -378,6 +378,11 @@ class _Summed(Material):
 
     def _material(self) -> dict[str, Any]:
         own = self._model()
+        if "window" not in own:
+            raise CaseError(
+                f"window of {type(self).__name__} is not given: it becomes a sum of exponentials that holds from the first to the last time of a"
+                " window; give window=(first, last) in s, from the shortest step of the run to its end"
+            )
         # The sum stands for the model where it was fitted.
         known: dict[str, Any] = {key: own.pop(key) for key in ("window", "shift", "temperature") if key in own}
         self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, known["window"]))

@@ -183,13 +183,17 @@ impl Moving {
     /// The forces at the end of a step; `held` is the error that they state for one that is known of them.
     fn forces(&self, row: &Solved<'_>, time_error: f64, held: impl FnOnce(f64) -> f64) -> Friction {
         let velocity = self.motion.path.velocity(row.step.instant.time);
+        let is_wet = row.simulation.traction.as_ref().is_some_and(|law| law.as_fluid().is_some());
+        let contact = &row.contact.pressure[..];
         let changed = row.undeformed.own_slopes.as_ref().map(|own| self.slopes.and(own));
         let contact = ContactForces {
             simulation: row.simulation,
             direction: self.motion.direction,
             slopes: changed.as_ref().unwrap_or(&self.slopes),
             state: row.now,
-            contact: &row.contact.pressure,
+            pressure: if is_wet { contact } else { &row.now.pressure },
+            contact,
+            fluid_load: if is_wet { row.loads[1] - row.contact_loads()[1] } else { 0.0 },
             gap: row.gap(),
             compliance: row.compliance,
             loses: row.simulation.loses(),

@@ -146,8 +146,12 @@ pub(crate) struct ContactForces<'a> {
     /// Of the undeformed gap of what moves.
     pub(crate) slopes: &'a Slopes,
     pub(crate) state: &'a ContactState,
-    /// The contact pressure \[Pa\]: that of the state, less the attraction of surfaces that adhere.
+    /// What does work on a gap that moves \[Pa\]: the pressure of the state, without that of a fluid, which is the same everywhere; and
+    /// the contact pressure alone, without the attraction of surfaces that adhere.
+    pub(crate) pressure: &'a [f64],
     pub(crate) contact: &'a [f64],
+    /// The load that the fluid carries \[N\].
+    pub(crate) fluid_load: f64,
     /// Undeformed gap and displacement c U; a constant does not count.
     pub(crate) gap: &'a [f64],
     pub(crate) compliance: f64,
@@ -223,7 +227,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Sums over the cells that press or pull, times the area of a cell; s is the direction of motion, n across it, D a central difference.
 struct Sums {
-    /// Σ p.
+    /// Σ p, and the load of the fluid.
     load: f64,
     /// Σ |p|.
     strain: f64,
@@ -268,7 +272,7 @@ impl ContactForces<'_> {
         };
         let displacement = |cell: usize| self.compliance * self.state.unit_displacement[cell];
         let of_cell = |cell: usize| {
-            let p = self.state.pressure[cell];
+            let p = self.pressure[cell];
             if p == 0.0 {
                 return [0.0; 11];
             }
@@ -286,6 +290,7 @@ impl ContactForces<'_> {
         };
         let all = sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum);
         let [load, strain, slopes, side, moment, contact, area, size, edges, waves, differences] = all;
+        let load = load + self.fluid_load;
         Sums { load, strain, slopes, side, moment, contact, area, size, edges, waves, differences }
     }
 

@@ -9,9 +9,11 @@ use asperity::contact::SolverOptions;
 use asperity::drive::{Drive, March};
 use asperity::leakage::{Direction, Sides};
 use asperity::load::{Control, History, Loading};
+use asperity::material::{Creep, CreepTerm};
+use asperity::process::Motion;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::simulation::{Plasticity, Simulation};
-use asperity::sliding::Path;
+use asperity::sliding::{Direction as SlidingDirection, MovingGap, Path};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::tangential::{Coupling, Tangential, TangentialControl};
 use asperity::traction::{Action, Adhesion, FluidPressure};
@@ -256,4 +258,38 @@ fn dents_of_an_adhesive_ball_stay_and_grow_no_more_under_the_same_approach() {
     // Pressed again as far as before: to the tolerance of the loop.
     assert!((volumes[12] / volumes[4] - 1.0).abs() < 1e-3, "{volumes:?}");
     agree(&of(Some(0.0)), &of(None));
+}
+
+#[test]
+fn friction_of_a_submerged_slider_is_that_of_the_dry_one_under_the_rest_of_the_load() {
+    let [wet, dry] = twins().map(|twin| {
+        let grid = twin.grid;
+        let surface = SelfAffine {
+            hurst: 0.8,
+            roughness: Roughness::RmsGradient(0.1),
+            roll_off: 0.5,
+            longest: 0.5,
+            shortest: 0.15,
+            seed: 3,
+        };
+        let parts = [(Part::SelfAffine(surface), true)];
+        let motion = Motion {
+            path: Path::of_velocity(History::Step { value: 0.1 }, 0.0).unwrap(),
+            direction: SlidingDirection::X,
+            gap: MovingGap::new(&grid, Boundary::Periodic, &parts).unwrap(),
+            cells_per_step: 1.0,
+            shear_stress: None,
+        };
+        let term = CreepTerm { compliance: 2.0, retardation_time: 0.5 };
+        rows(
+            Simulation {
+                creep: Creep { instantaneous: 0.5, terms: vec![term], fluidity: 0.0 },
+                motion: Some(motion),
+                quantities: Quantities::of(Quantity::of_motion()),
+                ..twin
+            },
+            |step| step.friction().unwrap().force,
+        )
+    });
+    agree(&wet, &dry);
 }

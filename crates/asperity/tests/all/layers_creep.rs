@@ -6,7 +6,9 @@ use std::sync::Arc;
 use asperity::history::check_layers;
 use asperity::layer::{BodyLayer, Interface, LayeredBody, Response, response};
 use asperity::material::{Body, Lateral, Material, Modulus, Relaxation};
+use asperity::process::Motion;
 use asperity::simulation::{Scheme, Simulation};
+use asperity::sliding::{Direction, MovingGap, Path};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
 
@@ -393,4 +395,47 @@ fn what_is_not_solved_is_refused() {
     let constant = Simulation { scheme: Scheme::Constant, ..simulation };
     let error = March::new(constant).err().unwrap().to_string();
     assert!(error.contains("layers that creep differently"), "{error}");
+}
+
+/// A cylinder that slides over a coating far thicker than the longest wave, on this base.
+fn sliding_over(base: Material, velocity: f64) -> Vec<(asperity::step::Row, f64)> {
+    let grid = Grid::line(128, 4.0).unwrap();
+    let base = Some(body("base", base, 0.5));
+    let of = response(&[LayeredBody { layers: vec![layer(20.0, zener(1.0, 0.2), 0.5)], base }]).unwrap();
+    let part = Part::Shape { shape: Shape::Cylinder { radius: 1.0 }, center: [0.0, 0.0] };
+    let motion = Motion {
+        path: Path::of_velocity(History::Step { value: velocity }, 0.0).unwrap(),
+        direction: Direction::X,
+        gap: MovingGap::new(&grid, Boundary::Periodic, &[(part.clone(), true)]).unwrap(),
+        cells_per_step: 1.0,
+        shear_stress: None,
+    };
+    let mut march = March::new(Simulation {
+        boundary: Boundary::Periodic,
+        loading: Loading { control: Control::Load, history: History::Step { value: 0.1 } }.into(),
+        times: TimeGrid::Uniform { end: 60.0 / 32.0 / velocity, steps: 1 },
+        motion: Some(motion),
+        ..simulation(grid, part, &of)
+    })
+    .unwrap();
+    let mut rows = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        rows.push((step.row(), step.friction().unwrap().coefficient));
+    }
+    rows
+}
+
+#[test]
+fn sliding_over_layers_that_creep_differently_is_that_over_one_law_where_the_base_is_far_away() {
+    for velocity in [0.05, 0.5, 5.0] {
+        let [found, expected] = [elastic(2.0), zener(1.0, 0.2)].map(|base| sliding_over(base, velocity));
+        assert_eq!(found.len(), expected.len());
+        let largest = expected.iter().fold(0.0_f64, |most, row| most.max(row.1.abs()));
+        assert!(largest > 1e-3, "{velocity}: {largest}");
+        for ((row, coefficient), (twin, own)) in found.iter().zip(&expected) {
+            // Creep functions of waves are fitted to 1e-4; friction is a difference of forces in front and behind.
+            assert!((coefficient - own).abs() < 2e-3 * largest, "{velocity}: {coefficient} {own}");
+            assert!((row.max_pressure / twin.max_pressure - 1.0).abs() < 1e-3);
+        }
+    }
 }

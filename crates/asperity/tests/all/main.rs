@@ -8,6 +8,7 @@ mod capped;
 mod conditions;
 mod contact;
 mod dents;
+mod dents_in_motion;
 mod friction;
 mod friction_error;
 mod held_approach;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm};
+use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::tangential::{Coupling, SlipRow, Tangential, TangentialControl};
 use asperity::{
@@ -340,4 +341,51 @@ fn a_step_of_gross_slip_is_solved_once_its_error_is_rounding() {
     }
     // All of the contact slips.
     assert!((last.force[0] / (0.6 * 50.0) - 1.0).abs() < 1e-3 && last.stick_area == 0.0, "{last:?}");
+}
+
+/// Force, displacement, work, what springs and dashpots took, and the work of friction, in each row.
+fn account(simulation: Simulation) -> Vec<[f64; 5]> {
+    let energies = [Quantity::ExternalWork, Quantity::ElasticEnergy, Quantity::DissipatedEnergy];
+    let mut march = March::new(Simulation { quantities: Quantities::of(energies), ..simulation }).unwrap();
+    let mut rows = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        let [work, stored, lost] = energies.map(|quantity| step.quantity(quantity).unwrap()[0]);
+        let row = step.slip_row().unwrap();
+        rows.push([row.force[0], row.displacement[0], work, stored + lost, row.work]);
+    }
+    rows
+}
+
+#[test]
+fn surfaces_that_stick_store_half_of_force_times_displacement() {
+    let mut stuck = loop_of(0, 0.3);
+    stuck.coefficient = 1e3;
+    let rows = account(sphere(32, 0.3, stuck));
+    let rest = rows[0][3];
+    for [force, way, work, kept, rubbed] in rows {
+        // The solver's tolerance, 1e-6 of displacements; where the force passes 0 beside the energy of the load.
+        assert!((kept - rest - 0.5 * force * way).abs() < 1e-5 * rest, "{force} {way} {kept}");
+        assert!((work - kept - rubbed).abs() < 1e-5 * rest && rubbed.abs() < 1e-5 * rest);
+    }
+}
+
+#[test]
+fn the_work_of_an_alternating_force_is_stored_lost_in_the_bodies_and_rubbed() {
+    let creep = Creep {
+        instantaneous: 0.35,
+        terms: vec![CreepTerm { compliance: 0.35, retardation_time: 1.0 }],
+        fluidity: 0.0,
+    };
+    for creep in [Creep::elastic(0.35), creep] {
+        let missing = [20, 80].map(|steps| {
+            let times = TimeGrid::Uniform { end: 5.0, steps };
+            let rows =
+                account(Simulation { times, creep: creep.clone(), ..sphere(32, 0.3, loop_of(0, 0.3)) });
+            let [.., last] = rows[..] else { panic!("no rows") };
+            assert!(last[4] > 0.0);
+            rows.iter().map(|row| (row[2] - row[3] - row[4]).abs()).fold(0.0, f64::max) / last[4]
+        });
+        // Friction takes the end of a step for all of it: of first order.
+        assert!(missing[0] < 0.2 && missing[1] < 0.4 * missing[0], "{missing:?}");
+    }
 }

@@ -188,7 +188,7 @@ impl TractionLaw for FluidPressure {
     fn check(&self, simulation: &Simulation) -> Result<()> {
         let end = simulation.times.end();
         self.validate(end).of("leakage")?;
-        if simulation.motion.is_some() {
+        if simulation.motion.is_some() && self.action != Action::Everywhere {
             let expected = "none: the flow that a sliding surface drags along is not solved";
             return Err(
                 Error::invalid("motion of a contact that a fluid acts on", "given", expected).of("motion")

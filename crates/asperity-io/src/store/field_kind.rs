@@ -131,10 +131,10 @@ impl FieldKind {
         choice::word(&self)
     }
 
-    /// Cells by which this field of a row is taken into the frame of the contact; worn depths are in those of their bodies already.
+    /// Cells by which this field of a row is taken into the frame of the contact; worn depths and dents are in those of their bodies already.
     pub fn shift(self, step: &Step<'_>) -> [isize; 2] {
         match self {
-            FieldKind::WearDepth | FieldKind::CounterbodyWearDepth => [0; 2],
+            FieldKind::WearDepth | FieldKind::CounterbodyWearDepth | FieldKind::Flattening => [0; 2],
             _ => step.frame_shift(),
         }
     }

@@ -29,11 +29,8 @@ pub(super) struct Flattening {
 impl Flattening {
     /// `None` where the cut-off leaves no flattening.
     pub(super) fn of(simulation: &Arc<Simulation>) -> Option<Self> {
-        let carried = simulation.motion.as_ref().map(|_| Carried {
-            simulation: simulation.clone(),
-            dents: zeros(simulation.grid.len()),
-            offset: [0.0; 2],
-        });
+        let carried =
+            simulation.motion.as_ref().map(|_| Carried { simulation: simulation.clone(), offset: [0.0; 2] });
         (simulation.plasticity == Plasticity::Accumulate).then(|| Flattening {
             depth: 0.0,
             cell_area: simulation.grid.cell_area(),
@@ -42,22 +39,23 @@ impl Flattening {
     }
 }
 
-/// The dents of one body of a contact in motion.
+/// The body of a contact in motion that is dented.
 struct Carried {
     simulation: Arc<Simulation>,
-    /// Their depths in the frame of the body that has them \[m\].
-    dents: Vec<f64>,
     /// Cells along x and y that this body has gone.
     offset: [f64; 2],
 }
 
 impl Carried {
-    /// Adds them to a gap that does not have them, where the body is at a time.
+    /// Adds its dents to a gap that does not have them, where the body is at a time.
     fn add_to(&mut self, gap: &mut UndeformedGap, time: f64) {
         let Simulation { grid, boundary, motion, dents_move, .. } = &*self.simulation;
         let moving = motion.as_ref().filter(|_| *dents_move);
         self.offset = moving.map_or([0.0; 2], |motion| motion.cells_gone(grid, time));
-        let on_grid = carry(grid, *boundary, self.offset, &self.dents);
+        if gap.dents.is_empty() {
+            return;
+        }
+        let on_grid = carry(grid, *boundary, self.offset, &gap.dents);
         each(gap.own_mut(), &on_grid[..], |h, dent| *h += dent);
         if moving.is_some() {
             let own = Array2::from_shape_vec(grid.shape(), on_grid).expect("one dent for each cell");
@@ -66,10 +64,11 @@ impl Carried {
     }
 
     /// Takes in those of a row, in the frame of the grid.
-    fn take_in(&mut self, dents: &[f64]) {
+    fn take_in(&self, dents: &[f64], gap: &mut UndeformedGap) {
         let Simulation { grid, boundary, .. } = &*self.simulation;
         let own = carry(grid, *boundary, self.offset.map(|cells| -cells), dents);
-        each(&mut self.dents, &own[..], |to, dent| *to += dent);
+        gap.dents.resize(grid.len(), 0.0);
+        each(&mut gap.dents, &own[..], |to, dent| *to += dent);
     }
 }
 
@@ -90,10 +89,10 @@ impl Process for Flattening {
         };
         let (p, u) = (&row.contact.pressure[..], &row.now.unit_displacement[..]);
         let cells = (p, u, &row.own_gap[..], row.hardness);
-        if let Some(carried) = &mut self.carried {
+        if let Some(carried) = &self.carried {
             let mut dents = zeros(p.len());
             each(&mut dents, cells, |dent, (p, u, gap, most)| *dent = overlap(p, u, gap, most));
-            carried.take_in(&dents);
+            carried.take_in(&dents, row.undeformed);
         }
         let [depth] = each_with_sums(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| {
             let overlap = overlap(p, u, gap, most);
@@ -116,12 +115,16 @@ impl Process for Flattening {
     fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
         to.field("gap", gap.now());
         to.value("depth", &self.depth);
-        self.carried.iter().for_each(|carried| to.field("dents", &carried.dents));
+        if !gap.dents.is_empty() {
+            to.field("dents", &gap.dents);
+        }
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
         self.depth = from.get("depth")?;
-        self.carried.iter_mut().try_for_each(|carried| from.field_into("dents", &mut carried.dents))?;
+        if self.carried.is_some() && self.depth > 0.0 {
+            gap.dents = from.field("dents")?;
+        }
         from.field_into("gap", gap.own_mut())
     }
 }

@@ -433,10 +433,13 @@ impl<'a> Step<'a> {
     }
 
     /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](crate::Plasticity) has added to the
-    /// undeformed gap. 0 everywhere with the reversible cut-off.
+    /// undeformed gap, in motion in the frame of the body that is dented. 0 everywhere with the reversible cut-off.
     pub fn flattening_into(&self, flattening: &mut Array2<f64>) {
         flattening.fill(0.0);
-        if let Some(gap) = self.undeformed.filter(|_| self.simulation.motion.is_none()) {
+        let Some(gap) = self.undeformed else { return };
+        if self.simulation.motion.is_some() {
+            flattening.iter_mut().zip(&gap.dents).for_each(|(f, dent)| *f = *dent);
+        } else {
             let cells = flattening.iter_mut().zip(gap.now().iter().zip(gap.at_start()));
             cells.for_each(|(f, (now, then))| *f = if now > then { now - then } else { 0.0 });
             if let Some(worn) = self.processes.iter().find_map(|process| process.worn()) {

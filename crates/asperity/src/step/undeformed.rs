@@ -13,6 +13,8 @@ pub(crate) struct UndeformedGap {
     before: Option<Vec<f64>>,
     /// By what it recedes in the step under way because of the pressure at its end.
     pub(crate) recession: Recession,
+    /// Depths of dents that stay \[m\], in the frame of the body that has them; empty where the contact stays too, or before the first.
+    pub(crate) dents: Vec<f64>,
     /// Slopes of what wear and dents have added to the parts that move.
     pub(crate) own_slopes: Option<Slopes>,
 }
@@ -24,6 +26,7 @@ impl UndeformedGap {
             own: None,
             before: None,
             recession: Recession::default(),
+            dents: vec![],
             own_slopes: None,
         }
     }

@@ -10,6 +10,7 @@ use asperity::sliding::{Direction, MovingGap, Path, Steady, SteadyMotion};
 use asperity::step::Step;
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Boundary, Grid, SolverOptions, TimeGrid};
+use ndarray::Array2;
 
 const CELL: f64 = 1.0 / 32.0;
 
@@ -54,6 +55,13 @@ fn way(cells: f64) -> Simulation {
     sliding(vec![(0.0, 0.0), (cells, cells * CELL)], vec![(0.0, 0.02), (cells, 0.02)])
 }
 
+/// The volume of the dents, as their field has it.
+fn volume(step: &Step<'_>) -> f64 {
+    let mut dents = Array2::zeros(grid().shape());
+    step.flattening_into(&mut dents);
+    dents.sum() * grid().cell_area()
+}
+
 fn number(step: &Step<'_>, quantity: Quantity) -> f64 {
     step.quantity(quantity).unwrap()[0]
 }
@@ -71,6 +79,11 @@ fn rows<T>(simulation: Simulation, of: impl Fn(&Step<'_>) -> T) -> Vec<T> {
 fn a_track_is_ploughed_and_friction_does_the_work() {
     let found = rows(way(60.0), |step| {
         let of = |quantity| number(step, quantity);
+        // Each cell by one sum, or all by another.
+        assert!(
+            (volume(step) - of(Quantity::PlasticVolume)).abs()
+                < 1e-12 * of(Quantity::PlasticVolume).max(1e-9)
+        );
         let energies = of(Quantity::ElasticEnergy) + of(Quantity::FlatteningWork);
         let force = step.friction().unwrap().force;
         (
@@ -108,6 +121,7 @@ fn the_way_back_in_the_groove_at_less_load_is_elastic() {
 fn a_slider_with_the_dents_is_dented_once() {
     let simulation = Simulation { dents_move: true, ..way(40.0) };
     let found = rows(simulation, |step| {
+        assert!((volume(step) - number(step, Quantity::PlasticVolume)).abs() < 1e-12 * volume(step));
         (number(step, Quantity::PlasticVolume), step.row(), step.friction().unwrap().force)
     });
     let (first, last) = (found[0], found[40]);

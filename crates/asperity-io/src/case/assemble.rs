@@ -131,6 +131,9 @@ impl Document {
             checks.root().without(&["time"], why, "[motion.steady] alone", "leave the section out");
             let help = "store the fields of every n-th velocity by `every`";
             at("output").without(&["times"], why, "`every`", help);
+            let help = "leave it out: all stored velocities are computed";
+            at("stress").without(&["times"], why, "none", help);
+            at("leakage").without(&["times"], why, "none", help);
         }
         let stops = motion.as_ref().zip(grid.as_ref()).zip(times.as_ref());
         let stops = stops.and_then(|((motion, grid), times)| motion.stops(&at("motion"), grid, times.end()));

@@ -10,6 +10,7 @@ mod findings;
 mod golden;
 mod leakage;
 mod programme;
+mod steady_states;
 mod store;
 mod stress;
 mod wording;

@@ -403,7 +403,7 @@ fn a_line_contact_has_the_stress_below_a_cylinder() {
     assert_eq!(yy.dim(), (192, 1));
     assert!(yy.iter().zip(&p).all(|(yy, p)| (yy + 0.6 * p).abs() < 1e-12 * p0));
     let below = Below::of(&reader).unwrap().unwrap();
-    assert!(first_yield(&below).unwrap().sentence(&set).contains("no yield"));
+    assert!(first_yield(&below).unwrap().sentence(&below).contains("no yield"));
     let found = section(&reader, &below, below.worst().unwrap()).unwrap();
     assert!(found.along_y.is_none() && found.maps.is_empty() && found.along_x.dim().0 == 192);
     let plan = StressPlan::of(&set, &reader);

@@ -16,7 +16,6 @@ def held(seed, modulus=1e3, alpha=0.2, offset=0.3e-9, **metadata):
     into, late = np.clip(t - 1, 0, None), np.clip(t - 2, 0, None)
     # (2/pi) tan E* int (t - s)^-alpha 2 v^2 s ds, to the end of the ramp at most.
     shape = (into ** (2 - alpha) - late ** (1 - alpha) * ((1 - alpha) + into)) / ((1 - alpha) * (2 - alpha))
-    shape = np.where(t < 2, into ** (2 - alpha) / ((1 - alpha) * (2 - alpha)), shape)
     force = 2 / np.pi * np.tan(CONE["angle"]) * modulus / 0.75 * 2e-12 * shape + offset
     force = force + np.random.default_rng(seed).normal(0, 2e-12, t.size)
     segments = (asp.Segment("approach", 0, 401, 1e-6), asp.Segment("hold", 401, 801, 0.0, "height"))
@@ -88,21 +87,19 @@ def test_an_elastic_fit_of_a_curve_takes_its_branch():
 
 
 def test_a_thin_sample_is_fitted_without_adhesion():
-    # Half of its modulus again as a half-space: the base is rigid.
-    depth = np.linspace(-2e-6, 0.3e-6, 300)
     layer = asp.Body(layers=[asp.Layer(thickness=2e-6, material=asp.Elastic(young=1e3, poisson=0.49))])
     sphere = asp.Surface.sphere(cells=(64, 64), size=(6e-6, 6e-6), radius=10e-6)
-    steps = np.linspace(0.0, 0.3e-6, 31)[1:]
-    loads = np.array([asp.solve(sphere, layer, approach=float(step)).load[-1] for step in steps[4::5]])
-    known = np.concatenate([[0.0], steps[4::5]])
-    # W grows as depth^1.5 times a smooth function: interpolated in it.
-    smooth = np.interp(depth.clip(1e-9), known[1:], loads / known[1:] ** 1.5)
-    force = np.where(depth > 0, smooth * depth.clip(0) ** 1.5, 0.0)
+    pressed = asp.solve(sphere, layer, approach=asp.ramp(0.2e-6, duration=1.0), times=asp.uniform(1.0, 20))
+    # The load grows as depth^1.5 times a smooth function, which is interpolated.
+    depth = np.linspace(-1e-6, 0.2e-6, 300)
+    known = slice(1, None)
+    smooth = np.interp(depth, pressed.approach[known], pressed.load[known] / pressed.approach[known] ** 1.5)
+    force = smooth * depth.clip(0) ** 1.5
     how = {"radius": 10e-6, "indenter": "paraboloid", "poisson": 0.49, "model": "hertz", "branch": "approach"}
     thin = asp.fit_indentation(None, force, depth, thickness=2e-6, **how)
     thick = asp.fit_indentation(None, force, depth, **how)
     # 64 cells along 6 um: the edge of the contact is known to a cell, some percent of its load.
-    assert thin.young[0] == pytest.approx(1e3, rel=0.05) and thick.young[0] > 1.5e3
+    assert thin.young[0] == pytest.approx(1e3, rel=0.05) and thick.young[0] > 1.3e3
     wide = asp.fit_indentation(None, force, depth, thickness=2e-6, thickness_uncertainty=0.2e-6, **how)
     assert wide.young[2] / wide.young[0] > 1.05
     with pytest.raises(asp.CaseError, match="adhesion"):

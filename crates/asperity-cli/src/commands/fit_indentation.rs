@@ -198,8 +198,12 @@ fn report_power_law(
     line("", format!("{:<12}95 % interval", "value"));
     line(&format!("{symbol}_1"), interval_in_words(of.of(fit.modulus), "Pa"));
     line("alpha", interval_in_words(fit.exponent, ""));
-    if args.fit_touch {
-        line("touch", interval_in_words(fit.touch, "m"));
+    for (name, found, unit) in
+        [("touch", fit.touch, "m"), ("baseline", fit.baseline, "N"), ("tilt", fit.tilt, "N/m")]
+    {
+        if found.low < found.high {
+            line(name, interval_in_words(found, unit));
+        }
     }
     record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text
@@ -216,6 +220,8 @@ fn json_of_power_law(fit: &PowerLawFit, of: MaterialOf) -> Value {
         "modulus_at_1_s": interval(of.of(fit.modulus)),
         "exponent": interval(fit.exponent),
         "touch": interval(fit.touch),
+        "baseline": interval(fit.baseline),
+        "tilt": interval(fit.tilt),
         "confidence": 0.95,
         "rms": fit.rms,
         "relative_rms": fit.relative_rms,
@@ -244,8 +250,12 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
         line(&format!("{symbol}_{}", k + 1), pascal(*modulus));
         line(&format!("tau_{}", k + 1), interval_in_words(*time, "s"));
     }
-    if args.fit_touch {
-        line("touch", interval_in_words(fit.touch, "m"));
+    for (name, found, unit) in
+        [("touch", fit.touch, "m"), ("baseline", fit.baseline, "N"), ("tilt", fit.tilt, "N/m")]
+    {
+        if found.low < found.high {
+            line(name, interval_in_words(found, unit));
+        }
     }
     record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text
@@ -277,6 +287,8 @@ fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
         "equilibrium": modulus(fit.equilibrium),
         "terms": fit.terms.iter().map(|[m, t]| json!({ "modulus": modulus(*m), "time": interval(*t) })).collect::<Vec<_>>(),
         "touch": interval(fit.touch),
+        "baseline": interval(fit.baseline),
+        "tilt": interval(fit.tilt),
         "confidence": 0.95,
         "numbers_of_terms": fit.numbers,
         "rms": fit.rms,

@@ -404,3 +404,12 @@ fn logarithmic(value: f64, ends: [f64; 2]) -> Interval {
 fn invalid<T>(what: &str, value: impl std::fmt::Display, expected: impl Into<String>) -> Result<T> {
     Err(Error::invalid(what, value, expected))
 }
+
+/// Refuses a depth that does not grow with the load.
+fn turned<T>() -> Result<T> {
+    invalid(
+        "depth of the force curve",
+        "not larger where the load is larger",
+        "larger where the sphere is pressed deeper: depth = height less deflection; turn the sign of the column",
+    )
+}

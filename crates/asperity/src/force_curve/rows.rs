@@ -1,9 +1,10 @@
 //! The rows of a branch: which are in contact and which are free, and the noise of both channels.
 
 use super::body::Body;
-use super::{Branch, ForceModel, ForceOptions, ForceRecord, Weights, invalid};
+use super::{Branch, ForceModel, ForceOptions, ForceRecord, Weights, invalid, turned};
 use crate::error::{Result, require};
 use crate::indentation::{Baseline, Line, Start, correlation, noise, start};
+use crate::material::dot;
 use crate::numbers::extent;
 use crate::reference::MdrProfile;
 
@@ -147,6 +148,7 @@ impl Rows {
         let (numbers, paused) = branch(record, options)?;
         let rows: Vec<[f64; 2]> =
             numbers.iter().map(|row| [record.loads[*row], record.depths[*row]]).collect();
+        require_direction(&rows)?;
         let adhesive = options.model != ForceModel::Hertz;
         let (body, found) = match adhesive {
             true => (Body::half_space(profile), split(&rows)),
@@ -367,15 +369,30 @@ fn bend(free: &[[f64; 2]], baseline: Baseline) -> f64 {
     if n < FEWEST || baseline != Baseline::Tilted {
         return 0.0;
     }
-    let line = Line::through(free);
-    let away: Vec<f64> = free.iter().map(|row| away_of(row, line)).collect();
-    let parts = away.chunks(n.div_ceil(4)).map(|part| mean_of(part.iter().copied())).collect::<Vec<_>>();
-    let Some([a, b, c, d]) = parts.first_chunk() else { return 0.0 };
-    // Of a parabola, this is how far its ends lie from its middle.
-    let found = (a - b - c + d).abs();
-    let squares = away.iter().map(|x| x * x).sum::<f64>() / n as f64;
-    let noise = (4.0 * squares * correlation(&away) / (n as f64 / 4.0)).sqrt();
-    if found > SEEN * noise { found } else { 0.0 }
+    let [low, high] = extent(free.iter().map(|row| row[1]));
+    // From -1 to 1; a parabola in it less its straight line.
+    let across = |row: &[f64; 2]| (2.0 * row[1] - low - high) / (high - low);
+    let square: Vec<[f64; 2]> = free.iter().map(|row| [across(row).powi(2), row[1]]).collect();
+    let [of_loads, of_square] = [free, &square].map(|rows| {
+        let line = Line::through(rows);
+        rows.iter().map(|row| away_of(row, line)).collect::<Vec<f64>>()
+    });
+    let squares = dot(&of_square, &of_square);
+    let found = dot(&of_loads, &of_square) / squares;
+    let rest: Vec<f64> = of_loads.iter().zip(&of_square).map(|(w, x)| w - found * x).collect();
+    let noise = (dot(&rest, &rest) / n as f64 * correlation(&rest) / squares).sqrt();
+    // How far its ends lie from its middle.
+    if found.abs() > SEEN * noise { found.abs() } else { 0.0 }
+}
+
+/// Refuses rows, from the largest load on, whose depth is not larger where the load is.
+fn require_direction(rows: &[[f64; 2]]) -> Result<()> {
+    let n = rows.len();
+    let depth = |rows: &[[f64; 2]]| mean_of(rows.iter().map(|row| row[1]));
+    match depth(&rows[..n.div_ceil(10)]) > depth(&rows[n / 2..]) {
+        true => Ok(()),
+        false => turned(),
+    }
 }
 
 /// Mean of the first rows less that of the last.

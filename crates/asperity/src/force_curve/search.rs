@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::body::Body;
 use super::rows::Rows;
-use super::{ForceModel, ForceOptions, invalid};
+use super::{ForceModel, ForceOptions, turned};
 use crate::error::Result;
 use crate::indentation::{Baseline, correlation, covariance, damped_step, durbin_watson};
 use crate::material::dot;
@@ -404,11 +404,7 @@ impl<'a> Problem<'a> {
         let found = starts.iter().filter_map(|lambda| self.solve_from(&self.start(*lambda)?).ok());
         match found.min_by(|a, b| a.squares.total_cmp(&b.squares)) {
             Some(found) => Ok(found),
-            None => invalid(
-                "depth of the force curve",
-                "not larger where the load is larger",
-                "larger where the sphere is pressed deeper: depth = height less deflection; turn the sign of the column",
-            ),
+            None => turned(),
         }
     }
 
@@ -509,16 +505,17 @@ impl<'a> Problem<'a> {
     /// Standard deviations of a residual in contact and off it, and the same with what is not known about them: the model may bend away from the contact, and what varies slowly far from
     /// the body says nothing about the few rows of a contact.
     fn scatter(&self, apart: &[f64], parameters: usize) -> [[f64; 2]; 2] {
-        let more = apart.len() as f64 / (apart.len() as f64 - parameters as f64).max(1.0);
-        let of = |rows: &[f64]| {
+        let of = |rows: &[f64], parameters: usize| {
             let (n, alike) = (rows.len() as f64, correlation(rows));
-            let scatter = (more * dot(rows, rows) / n * alike).sqrt().max(LEAST);
-            [scatter, scatter * student(n / alike - 2.0)]
+            let freedom = n - parameters as f64;
+            let scatter = (dot(rows, rows) / freedom.max(1.0) * alike).sqrt().max(LEAST);
+            [scatter, scatter * student(freedom / alike)]
         };
+        let of_line = self.fitted().iter().filter(|k| **k >= 4).count().min(parameters);
         let (contact, free) = apart.split_at(self.rows.contact.len());
         let [contact, free] = match contact.len() < OWN || free.len() < OWN {
-            true => [of(apart); 2],
-            false => [of(contact), of(free)],
+            true => [of(apart, parameters); 2],
+            false => [of(contact, parameters - of_line), of(free, of_line)],
         };
         [[contact[0], free[0]], [contact[1], free[1]]]
     }

@@ -7,7 +7,7 @@ TOPICS = {
     "Surfaces": ["Surface", "Autocorrelation"],
     "Materials": "Material Elastic Maxwell KelvinVoigt Zener StandardLinearSolid Burgers Prony Creep Springpot PowerLaw FractionalMaxwell FractionalZener Body Layer "
     "layer_compliance CreepFunction Relaxation Spread".split(),
-    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation read_force_curves fit_force_map Fit IndentationFit PowerLawFit ForceFit ForceCurve ForceMap wlf arrhenius shift_table Shift".split(),
+    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation read_force_curves fit_force_map Fit IndentationFit PowerLawFit ForceFit ForceCurve Segment ForceMap wlf arrhenius shift_table Shift".split(),
     "Loads and times": "step ramp ramp_to hold triangle trapezoid sine table History Stage uniform log listed adaptive Times".split(),
     "Motion": "slide steady rubber_friction persson_friction PerssonFriction Magnification".split(),
     "Friction, wear and heat": "Friction tangential Tangential Wear Flash".split(),

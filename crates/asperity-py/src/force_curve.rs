@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::error::Answer;
 use crate::given::{Dict, List, choose, entries};
+use crate::indentation::sample;
 use crate::wait::detached;
 
 /// Fits a force curve; `size` is the radius or the half angle of the indenter, uncertainties are standard ones over the value. Intervals are (value, low, high, determined).
@@ -19,12 +20,15 @@ pub fn fit_force_curve<'py>(
     depths: List<'_>,
     indenter: &str,
     size: f64,
+    thin: Option<(f64, f64, String)>,
     model: &str,
     branch: &str,
     control: Option<&str>,
+    weights: &str,
     range: Option<f64>,
     spring_constant: Option<f64>,
     radius_uncertainty: f64,
+    thickness_uncertainty: f64,
     load_uncertainty: f64,
     sensitivity_uncertainty: f64,
 ) -> Answer<Dict<'py>> {
@@ -33,9 +37,12 @@ pub fn fit_force_curve<'py>(
         model: choose("model", model)?,
         branch: choose("branch", branch)?,
         control: control.map(|word| choose("control", word)).transpose()?,
+        weights: choose("weights", weights)?,
         range,
         spring_constant,
         radius_uncertainty,
+        layer: thin.map(sample).transpose()?,
+        thickness_uncertainty,
         load_uncertainty,
         sensitivity_uncertainty,
     };
@@ -51,6 +58,7 @@ pub fn fit_force_curve<'py>(
     out.set_item("range", fit.range.map(interval))?;
     out.set_item("touch", interval(fit.touch))?;
     out.set_item("baseline", interval(fit.baseline))?;
+    out.set_item("tilt", interval(fit.tilt))?;
     out.set_item("predicted", fit.predicted.into_pyarray(py))?;
     entries!(out, fit; rows alpha pull_off_force smallest_load tabor contact_radius relative_rms durbin_watson notes);
     Ok(out)

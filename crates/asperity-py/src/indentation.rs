@@ -13,7 +13,8 @@ use crate::error::Answer;
 use crate::given::{Dict, List, choose, entries};
 use crate::wait::detached;
 
-fn sample((thickness, poisson, interface): (f64, f64, String)) -> Answer<SampleLayer> {
+/// A thin sample of its thickness, Poisson's ratio and interface.
+pub fn sample((thickness, poisson, interface): (f64, f64, String)) -> Answer<SampleLayer> {
     Ok(SampleLayer { thickness, poisson, interface: choose("interface", &interface)? })
 }
 
@@ -64,7 +65,9 @@ pub fn fit_indentation<'py>(
         let fit = detached(py, || fit_power_law(profile, &record, &options))??;
         out.set_item("modulus", interval(fit.modulus))?;
         out.set_item("exponent", interval(fit.exponent))?;
-        out.set_item("touch", interval(fit.touch))?;
+        for (name, value) in [("touch", fit.touch), ("baseline", fit.baseline), ("tilt", fit.tilt)] {
+            out.set_item(name, interval(value))?;
+        }
         out.set_item("given", choice::word(&fit.given))?;
         out.set_item("predicted", fit.predicted.into_pyarray(py))?;
         entries!(out, fit; rows rms relative_rms durbin_watson notes);
@@ -77,7 +80,9 @@ pub fn fit_indentation<'py>(
     let terms: Vec<_> =
         fit.terms.iter().map(|[modulus, time]| (interval(*modulus), interval(*time))).collect();
     out.set_item("terms", terms)?;
-    out.set_item("touch", interval(fit.touch))?;
+    for (name, value) in [("touch", fit.touch), ("baseline", fit.baseline), ("tilt", fit.tilt)] {
+        out.set_item(name, interval(value))?;
+    }
     out.set_item("given", choice::word(&fit.given))?;
     out.set_item("predicted", fit.predicted.into_pyarray(py))?;
     out.set_item("numbers_of_terms", &fit.numbers)?;

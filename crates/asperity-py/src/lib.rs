@@ -7,6 +7,7 @@ mod cycles;
 mod error;
 mod fit;
 mod force_curve;
+mod force_file;
 mod given;
 mod indentation;
 mod kernel;
@@ -38,6 +39,7 @@ mod _core {
         error::{CaseError, ConvergenceError, FormatError},
         fit::{fit, fit_file, read_shift_table},
         force_curve::fit_force_curve,
+        force_file::read_force_file,
         indentation::fit_indentation,
         leakage::{judge_leaks, leakage},
         march::March,

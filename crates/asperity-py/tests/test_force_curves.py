@@ -78,6 +78,7 @@ def test_depth_is_height_less_deflection():
 
 def test_files_need_the_reader(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "afmformats", None)
+    (tmp_path / "curve.h5").write_text("text")
     with pytest.raises(ImportError, match="afm"):
         asp.read_force_curves(tmp_path / "curve.h5")
 
@@ -115,7 +116,7 @@ def test_a_map_of_curves_gives_maps_with_intervals(tmp_path):
         assert np.sum((low <= true) & (true <= high)) >= 26
     # The intervals are those of the single fits.
     (curve,) = (c for c in curves if (c.metadata["grid index x"], c.metadata["grid index y"]) == (1, 2))
-    one = asp.fit_indentation(None, curve.force, curve.depth, model="jkr", range=1e-9, **SPHERE)
+    one = asp.fit_indentation(curve, model="jkr", range=1e-9, **SPHERE)
     assert one.young == (found.young[1, 2], found.young_low[1, 2], found.young_high[1, 2])
     with pytest.raises(ValueError, match="read-only"):
         found.young[0, 0] = 0.0

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use asperity::force_curve::{Branch, ForceModel, PullOffControl};
+use asperity::force_curve::{Branch, ForceModel, PullOffControl, Weights};
 use asperity::indentation::{Given, Indenter};
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
@@ -216,6 +216,9 @@ pub struct ForceCurve {
     /// --spring-constant, else displacement]
     #[arg(long, value_parser = words::<PullOffControl>())]
     pub control: Option<PullOffControl>,
+    /// How the rows of a force curve count: by their noise, or all alike (none), as other programs do it [default: noise]
+    #[arg(long, value_parser = words::<Weights>())]
+    pub weights: Option<Weights>,
     /// Range of the attraction, in place of a fitted transition of --model maugis, and for Tabor's number, e.g. '0.3 nm'
     #[arg(long, value_name = "LENGTH", value_parser = quantity::<Length<range::Positive>>())]
     pub range: Option<Length<range::Positive>>,

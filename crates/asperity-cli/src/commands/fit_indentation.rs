@@ -36,10 +36,16 @@ impl Verb for FitIndentation {
             FitModel::Viscoelastic => false,
         };
         super::force_curve::not_given(self)?;
-        let options = options(self)?;
+        let mut options = options(self)?;
         let of = MaterialOf { modulus: self.modulus, poisson: self.poisson.get() };
         let columns = columns(&self.column, &self.unit)?;
-        let record = Indentation::read(&self.record, &columns).map_err(refused)?;
+        let record = match super::force_file::record(self)? {
+            Some(record) => {
+                options.fit_touch = true;
+                record
+            }
+            None => Indentation::read(&self.record, &columns).map_err(refused)?,
+        };
         let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
         let deepest = record.depths.iter().copied().fold(0.0, f64::max);
         let test = IndentationTest { profile, layer: options.layer, deepest };
@@ -86,9 +92,20 @@ fn profile(args: &FitIndentation) -> Result<MdrProfile, Failure> {
     args.indenter.profile(size).map_err(|error| Failure::input(format!("--angle: {error}")))
 }
 
-fn options(args: &FitIndentation) -> Result<IndentationOptions, Failure> {
+/// The thin sample of the options.
+pub(super) fn sample(args: &FitIndentation) -> Option<SampleLayer> {
     let (poisson, interface) = (args.poisson.get(), args.interface);
-    let layer = args.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface });
+    args.thickness.map(|depth| SampleLayer { thickness: depth.get(), poisson, interface })
+}
+
+/// The thin sample in words.
+pub(super) fn sample_in_words(args: &FitIndentation) -> Option<String> {
+    let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
+    args.thickness.map(|depth| format!("{} thick, {interface} a rigid base", quantity(depth.get(), "m")))
+}
+
+fn options(args: &FitIndentation) -> Result<IndentationOptions, Failure> {
+    let layer = sample(args);
     let [radius, thickness] = [args.radius, args.thickness].map(|x| x.map(Quantity::get));
     let stiffness = &args.curve.spring_constant_uncertainty;
     if matches!(args.model, FitModel::PowerLaw) {
@@ -155,10 +172,8 @@ fn head(
     line("rows", format!("{rows}{means}"));
     line("indenter", indenter(args));
     line("given", format!("{taken}; the {fitted} is fitted"));
-    if let Some(thickness) = &args.thickness {
-        let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
-        let thickness = quantity(thickness.get(), "m");
-        line("sample", format!("{thickness} thick, {interface} a rigid base"));
+    if let Some(sample) = sample_in_words(args) {
+        line("sample", sample);
     }
     line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
     text
@@ -183,8 +198,12 @@ fn report_power_law(
     line("", format!("{:<12}95 % interval", "value"));
     line(&format!("{symbol}_1"), interval_in_words(of.of(fit.modulus), "Pa"));
     line("alpha", interval_in_words(fit.exponent, ""));
-    if args.fit_touch {
-        line("touch", interval_in_words(fit.touch, "m"));
+    for (name, found, unit) in
+        [("touch", fit.touch, "m"), ("baseline", fit.baseline, "N"), ("tilt", fit.tilt, "N/m")]
+    {
+        if found.low < found.high {
+            line(name, interval_in_words(found, unit));
+        }
     }
     record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text
@@ -201,6 +220,8 @@ fn json_of_power_law(fit: &PowerLawFit, of: MaterialOf) -> Value {
         "modulus_at_1_s": interval(of.of(fit.modulus)),
         "exponent": interval(fit.exponent),
         "touch": interval(fit.touch),
+        "baseline": interval(fit.baseline),
+        "tilt": interval(fit.tilt),
         "confidence": 0.95,
         "rms": fit.rms,
         "relative_rms": fit.relative_rms,
@@ -229,8 +250,12 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
         line(&format!("{symbol}_{}", k + 1), pascal(*modulus));
         line(&format!("tau_{}", k + 1), interval_in_words(*time, "s"));
     }
-    if args.fit_touch {
-        line("touch", interval_in_words(fit.touch, "m"));
+    for (name, found, unit) in
+        [("touch", fit.touch, "m"), ("baseline", fit.baseline, "N"), ("tilt", fit.tilt, "N/m")]
+    {
+        if found.low < found.high {
+            line(name, interval_in_words(found, unit));
+        }
     }
     record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text
@@ -262,6 +287,8 @@ fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
         "equilibrium": modulus(fit.equilibrium),
         "terms": fit.terms.iter().map(|[m, t]| json!({ "modulus": modulus(*m), "time": interval(*t) })).collect::<Vec<_>>(),
         "touch": interval(fit.touch),
+        "baseline": interval(fit.baseline),
+        "tilt": interval(fit.tilt),
         "confidence": 0.95,
         "numbers_of_terms": fit.numbers,
         "rms": fit.rms,

@@ -1,7 +1,6 @@
 //! `asperity fit-indentation --model jkr`: modulus and work of adhesion from a force curve.
 
 use asperity::force_curve::{ForceFit, ForceModel, ForceOptions, ForceRecord, fit_force_curve};
-use asperity::layer::Interface;
 use asperity::material::{LongTime, Modulus};
 use asperity::reference::MdrProfile;
 use asperity_io::choice;
@@ -24,6 +23,7 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
         ("--branch", curve.branch.is_some()),
         ("--control", curve.control.is_some()),
         ("--range", curve.range.is_some()),
+        ("--weights", curve.weights.is_some()),
         ("--spring-constant", curve.spring_constant.is_some()),
     ] {
         if given {
@@ -36,14 +36,13 @@ pub fn not_given(args: &FitIndentation) -> Result<(), Failure> {
 /// Fits a force curve.
 pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Result<(), Failure> {
     let word = choice::word(&model);
-    if args.thickness.is_some() {
+    if args.thickness.is_some() && model != ForceModel::Hertz {
         refuse!(
             "--thickness does not go with --model {word}: its closed form is that of a half-space, and for adhesion on a thin sample there is \
-             none; --model viscoelastic --terms 0 fits an elastic thin sample without adhesion"
+             none; --model hertz fits an elastic thin sample without adhesion"
         );
     }
     for (option, given) in [
-        ("--interface", args.interface != Interface::Bonded),
         ("--given", args.given.is_some()),
         ("--terms", args.terms.is_some()),
         ("--long-time", args.long_time != LongTime::Free),
@@ -71,6 +70,7 @@ pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Res
         model,
         branch: curve.branch.unwrap_or_default(),
         control: curve.control,
+        weights: curve.weights.unwrap_or_default(),
         range: curve.range.map(Quantity::get),
         radius_uncertainty: share::<Length>(
             "--radius-uncertainty",
@@ -78,6 +78,12 @@ pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Res
             args.radius.map(Quantity::get),
         )?,
         spring_constant: spring,
+        layer: super::fit_indentation::sample(args),
+        thickness_uncertainty: share::<Length>(
+            "--thickness-uncertainty",
+            &args.thickness_uncertainty,
+            args.thickness.map(Quantity::get),
+        )?,
         load_uncertainty: share::<ForcePerLength>(
             "--spring-constant-uncertainty",
             &curve.spring_constant_uncertainty,
@@ -86,7 +92,10 @@ pub fn fit(args: &FitIndentation, model: ForceModel, profile: MdrProfile) -> Res
         sensitivity_uncertainty: curve.sensitivity_uncertainty.map_or(0.0, Quantity::get),
     };
     let said = columns(&args.column, &args.unit)?;
-    let table = ForceTable::read(&args.record, &said, cantilever).map_err(refused)?;
+    let table = match super::force_file::table(args)? {
+        Some(table) => table,
+        None => ForceTable::read(&args.record, &said, cantilever).map_err(refused)?,
+    };
     let record = ForceRecord { loads: &table.loads, depths: &table.depths };
     let fit = fit_force_curve(profile, &record, &options).map_err(Failure::about(args.record.display()))?;
     let of = MaterialOf { modulus: args.modulus, poisson: args.poisson.get() };
@@ -127,6 +136,9 @@ fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: Materia
     let [contact, free] = fit.used;
     line("rows", format!("{}: {contact} fitted in contact, {free} of the free sphere", table.loads.len()));
     line("indenter", super::fit_indentation::indenter(args));
+    if let Some(sample) = super::fit_indentation::sample_in_words(args) {
+        line("sample", sample);
+    }
     line("model", choice::word(&fit.model).to_owned());
     line("misfit", format!("{:.3} % of the range (rms)", 100.0 * fit.relative_rms));
     line("", format!("{:<12}95 % interval", "value"));
@@ -141,6 +153,7 @@ fn report(args: &FitIndentation, table: &ForceTable, fit: &ForceFit, of: Materia
     }
     line("touch", interval_in_words(fit.touch, "m"));
     line("baseline", interval_in_words(fit.baseline, "N"));
+    line("tilt", interval_in_words(fit.tilt, "N/m"));
     if fit.model != ForceModel::Hertz {
         let [model, measured] = [fit.pull_off_force, fit.smallest_load].map(|x| quantity(x, "N"));
         line(
@@ -190,6 +203,7 @@ fn json_of(fit: &ForceFit, of: MaterialOf) -> Value {
         "alpha": fit.alpha,
         "touch": interval(fit.touch),
         "baseline": interval(fit.baseline),
+        "tilt": interval(fit.tilt),
         "confidence": 0.95,
         "pull_off_force": fit.pull_off_force,
         "smallest_load": fit.smallest_load,

@@ -10,6 +10,7 @@ pub mod export;
 pub mod findings;
 pub mod fit_indentation;
 pub mod force_curve;
+mod force_file;
 pub mod labels;
 pub mod leak;
 pub mod material;

@@ -47,6 +47,9 @@ mod workbook;
 
 use std::path::{Path, PathBuf};
 
+pub use crate::topography::{
+    Calibration, InstrumentCurve, Place as GridPlace, holds_curves, read_curve_file, read_curves,
+};
 pub use columns::{Column, Columns, Place};
 pub use error::{CurveError, Remedy};
 pub use factors::{HeldShift, read_shift_table};

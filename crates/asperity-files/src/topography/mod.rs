@@ -49,6 +49,9 @@ use ndarray::Array2;
 use error::Result;
 pub use error::{Problem, TopographyError};
 pub use format::detect;
+pub use nanoscope::curves::{
+    Calibration, InstrumentCurve, Place, holds_curves, read_curve_file, read_curves,
+};
 pub use profile::{Profile, profile_of, read_profile};
 pub use write::{to_bytes, write};
 

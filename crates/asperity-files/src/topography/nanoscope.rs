@@ -13,6 +13,7 @@
 //! refused. (Digital Instruments, "Nanoscope command reference manual", and the readers of Gwyddion and
 //! SurfaceTopography.) How high an image is follows in [`extent`] from its scan size, aspect ratio and lines.
 
+pub(crate) mod curves;
 mod extent;
 
 use super::cursor::Cursor;

@@ -32,7 +32,8 @@ from ._contact import (
 from ._converge import ErrorBar as ErrorBar, converge as converge
 from ._findings import Finding as Finding, ResultWarning as ResultWarning
 from ._fit import CreepFunction as CreepFunction, Fit as Fit, Relaxation as Relaxation, fit_creep as fit_creep, fit_dma as fit_dma, fit_file as fit_file, fit_relaxation as fit_relaxation
-from ._force_curves import ForceCurve as ForceCurve, ForceFit as ForceFit, read_force_curves as read_force_curves
+from ._force_curves import ForceCurve as ForceCurve, ForceFit as ForceFit
+from ._force_files import read_force_curves as read_force_curves
 from ._force_maps import ForceMap as ForceMap, fit_force_map as fit_force_map
 from ._histories import *
 from ._indentation import IndentationFit as IndentationFit, PowerLawFit as PowerLawFit, fit_indentation as fit_indentation
@@ -43,6 +44,7 @@ from ._motion import rubber_friction as rubber_friction, slide as slide, steady 
 from ._persson import Magnification as Magnification, PerssonFriction as PerssonFriction, persson_friction as persson_friction
 from ._result import Cycle as Cycle, Result as Result, open as open
 from ._seal import Seal as Seal, Spread as Spread, seal as seal
+from ._segments import Segment as Segment
 from ._shifts import Shift as Shift, arrhenius as arrhenius, shift_table as shift_table, wlf as wlf
 from ._solve import March as March, Step as Step, check as check, march as march, run as run, solve as solve
 from ._stress import Stress as Stress, stress as stress

@@ -25,6 +25,7 @@ __all__ = [
     "fit",
     "fit_file",
     "fit_force_curve",
+    "read_force_file",
     "fit_indentation",
     "Body",
     "layer_compliance",
@@ -246,17 +247,21 @@ def fit_file(
     sheet: str | None,
     options: dict[str, Any],
 ) -> dict[str, Any]: ...
+def read_force_file(path: str, spring_constant: float | None, sensitivity: float | None) -> list[dict[str, Any]] | None: ...
 def fit_force_curve(
     loads: _Floats,
     depths: _Floats,
     indenter: str,
     size: float,
+    thin: tuple[float, float, str] | None,
     model: str,
     branch: str,
     control: str | None,
+    weights: str,
     range: float | None,
     spring_constant: float | None,
     radius_uncertainty: float,
+    thickness_uncertainty: float,
     load_uncertainty: float,
     sensitivity_uncertainty: float,
 ) -> dict[str, Any]: ...

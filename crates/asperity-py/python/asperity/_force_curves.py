@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import os
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyPath, Counts, Floats, choice, columns, number
+from ._arrays import Counts, Floats, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
-from ._words import Branch, Control
+from ._segments import Kind, Segment, found
+from ._words import Branch, Control, Interface, Model, Weights
 from .plot import recorded
 
 if TYPE_CHECKING:
@@ -37,9 +37,10 @@ class ForceFit(ReadOnlyArrays):
     range: Interval | None
     #: The transition from DMT (0) to JKR (1) as alpha of Carpick, Ogletree and Salmeron; None for other models.
     alpha: float | None
-    #: Depth of first touch [m] and load of the free sphere [N], as (value, low, high).
+    #: Depth of first touch [m], load of the free sphere there [N] and the slope of that load over the depth [N/m], as (value, low, high).
     touch: Interval
     baseline: Interval
+    tilt: Interval
     #: Load at pull-off of the model [N], and smallest load of the record, both without the baseline.
     pull_off_force: float
     smallest_load: float
@@ -62,8 +63,9 @@ class ForceFit(ReadOnlyArrays):
     def plot(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over depth, from the load of the free sphere and the depth of first touch: the record as points, the model as a line, which
         takes the further arguments."""
-        along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
-        return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
+        depth = self.depth - self.touch[0]
+        free = self.baseline[0] + self.tilt[0] * depth
+        return recorded(("depth", "m", depth), "load", self.load - free, self.predicted - free, ax, style)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]
@@ -91,14 +93,25 @@ def fit_force_curve(load: Any, depth: Any, size: float, poisson: float, model: s
     choice("branch", how["branch"], Branch)
     if how["control"] is not None:
         choice("control", how["control"], Control)
+    choice("weights", how["weights"], Weights)
     spring, of_spring = cantilever(*(how[name] for name in ("spring_constant", "spring_constant_uncertainty", "sensitivity_uncertainty")))
-    shares = share("radius", how["radius_uncertainty"], None if how["radius"] is None else size), *of_spring
+    thin = sample(how["thickness"], how["interface"], poisson)
+    of_size = share("radius", how["radius_uncertainty"], None if how["radius"] is None else size)
+    shares = of_size, share("thickness", how["thickness_uncertainty"], thin and thin[0]), *of_spring
     reach = None if how["range"] is None else number("range", how["range"])
-    found = _core.fit_force_curve(loads, depths, how["indenter"], size, model, how["branch"], how["control"], reach, spring, *shares)
+    found = _core.fit_force_curve(loads, depths, how["indenter"], size, thin, model, how["branch"], how["control"], how["weights"], reach, spring, *shares)
     modulus = interval(found.pop("contact_modulus"), 1.0 - poisson**2)
-    own = {name: found[name] and interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline")}
+    own = {name: found[name] and interval(found[name]) for name in ("work", "transition", "range", "touch", "baseline", "tilt")}
     rows = np.asarray(found["rows"], dtype=np.int64)
     return ForceFit(**{**found, **own, "rows": rows, "load": loads[rows], "depth": depths[rows]}, young=modulus)
+
+
+def sample(thickness: Any, interface: Any, poisson: float) -> tuple[float, float, str] | None:
+    """Thickness, Poisson's ratio and interface of a thin sample; None for a half-space."""
+    choice("interface", interface, Interface)
+    if thickness is None and interface != "bonded":
+        raise CaseError("interface is that of a thin sample to its base: give its thickness too")
+    return None if thickness is None else (number("thickness", thickness), poisson, interface)
 
 
 def interval(told: tuple[float, float, float, bool], factor: float = 1.0) -> Interval:
@@ -148,11 +161,15 @@ class ForceCurve(ReadOnlyArrays):
     height: Floats | None = None
     #: What the file says, by its words in SI units: "spring constant" [N/m], "sensitivity" [m/V], "grid index x", ...
     metadata: dict[str, Any] = field(default_factory=dict)
+    #: Time of each row [s]; None where it is not known.
+    time: Floats | None = None
+    #: Approach, holds and retraction in the order of the measurement; empty where they are not known.
+    segments: tuple[Segment, ...] = ()
 
     @classmethod
     def from_deflection(
         cls, height: Any, deflection: Any, /, *, spring_constant: float, sensitivity: float | None = None,
-        metadata: dict[str, Any] | None = None
+        time: Any = None, metadata: dict[str, Any] | None = None
     ) -> ForceCurve:
         """From the way of the cantilever's base towards the sample [m] and the deflection.
 
@@ -162,9 +179,10 @@ class ForceCurve(ReadOnlyArrays):
         deflection : [m], or [V] where `sensitivity` is given; positive when pressing
         spring_constant : of the cantilever [N/m]
         sensitivity : of the deflection [m/V]
+        time : of each row [s]
         metadata : to keep with the curve
         """
-        way, bent = columns(height=height, deflection=deflection)
+        way, bent, *times = columns(height=height, deflection=deflection, **({} if time is None else {"time": time}))
         stiffness = number("spring_constant", spring_constant)
         scale = 1.0 if sensitivity is None else number("sensitivity", sensitivity)
         for what, value in (("spring_constant", stiffness), ("sensitivity", scale)):
@@ -172,59 +190,46 @@ class ForceCurve(ReadOnlyArrays):
                 raise CaseError(f"{what} is {value}, but must be finite and greater than 0")
         bent = scale * bent
         told = {"spring constant": stiffness, **({} if sensitivity is None else {"sensitivity": scale}), **(metadata or {})}
-        return cls(stiffness * bent, way - bent, bent, way, told)
+        clock = times[0] if times else None
+        return cls(stiffness * bent, way - bent, bent, way, told, clock, found(way, bent, clock, [(0, len(way))]))
+
+    def select(self, *kinds: Kind) -> ForceCurve:
+        """The rows of the segments of these kinds, in the order of the measurement: ``curve.select("approach", "hold")``.
+
+        Raises
+        ------
+        CaseError : another word, or a curve without such a segment
+        """
+        for kind in kinds:
+            choice("kind of a segment", kind, Kind)
+        chosen = [segment for segment in self.segments if segment.kind in kinds]
+        if not chosen:
+            own = ", ".join(segment.kind for segment in self.segments) or "no segments that are known"
+            raise CaseError(f"select: the curve has no segment of the kind {' or '.join(kinds) or '(none is named)'}: it has {own}")
+        rows = np.concatenate([np.arange(segment.start, segment.stop) for segment in chosen])
+        ends = np.cumsum([segment.stop - segment.start for segment in chosen]).tolist()
+        moved = tuple(replace(segment, start=start, stop=stop) for segment, start, stop in zip(chosen, [0, *ends], ends))
+        picked = {name: None if (of := getattr(self, name)) is None else of[rows] for name in ("force", "depth", "deflection", "height", "time")}
+        return ForceCurve(**picked, segments=moved, metadata=dict(self.metadata))
 
     def __repr__(self) -> str:
         return f"<ForceCurve of {len(self.force)} points, loads {self.force.min():.4g} to {self.force.max():.4g} N>"
 
 
-def read_force_curves(path: AnyPath) -> list[ForceCurve]:
-    """The force curves of a file of an atomic force microscope or a nanoindenter, by the package `afmformats`.
-
-    JPK, Asylum Research, NT-MDT, AFM workshop, Optics11 and other files; a map gives one curve per pixel, with "grid index x" and
-    "grid index y" in its `metadata`. The spring constant is the one that the file states.
-
-    Parameters
-    ----------
-    path : of the file
-
-    Raises
-    ------
-    ImportError : without the package: ``pip install 'asperity[afm]'``
-    CaseError : no file, a format that the package does not know, a file that it cannot read, or no curve with force and height
-    """
-    try:
-        import afmformats  # type: ignore[import-not-found, import-untyped, unused-ignore]
-    except ImportError:
-        raise ImportError("files of force curves are read by afmformats: pip install 'asperity[afm]'") from None
-    name = os.fspath(path)
-    if not os.path.isfile(name):
-        raise CaseError(f"{name}: no such file")
-    try:
-        found = [_curve(data) for data in afmformats.load_data(name)]
-    # Any reader fails in its own way on a damaged file, and the package's own errors are no Exceptions.
-    except (Exception, afmformats.errors.AFMFileFormatError, afmformats.errors.MissingMetaDataError, afmformats.meta.MetaDataMissingError) as error:
-        raise CaseError(f"{name}: afmformats {afmformats.__version__} cannot read it: {error}") from error
-    curves = [curve for curve in found if curve is not None]
-    if not curves:
-        raise CaseError(f"{name} holds no curve of force over height or tip position")
-    return curves
-
-
-def _curve(data: Any) -> ForceCurve | None:
-    """A curve of afmformats, whose heights and tip positions grow away from the sample."""
-    metadata = {key: data.metadata[key] for key in data.metadata}
-    if "force" not in data:
-        return None
-    force = np.array(data["force"], dtype=float)
-    heights = (np.array(data[name], dtype=float) for name in ("height (measured)", "height (piezo)") if name in data)
-    away = next(heights, None)
-    height = None if away is None else -away
-    stiffness = metadata.get("spring constant")
-    deflection = force / stiffness if stiffness is not None and np.isfinite(stiffness) and stiffness > 0 else None
-    # Where the file states the position of the tip, it counts: formats differ in the sign of their heights.
-    if "tip position" in data:
-        return ForceCurve(force, -np.array(data["tip position"], dtype=float), deflection, height, metadata)
-    if height is not None and deflection is not None:
-        return ForceCurve(force, height - deflection, deflection, height, metadata)
-    return None
+def of_model(curve: ForceCurve, model: str, branch: str) -> tuple[Floats | None, Floats, Floats, str | None]:
+    """Time, load and depth of the rows that a model takes, and the channel that the test controlled."""
+    if model in get_args(Model):
+        kind: Kind = "approach" if branch == "approach" else "retract"
+        own = curve.select(kind) if curve.segments else curve
+        return None, own.force, own.depth, None
+    if curve.time is None:
+        raise CaseError(f"the curve has no times, which the model {model!r} needs: give them as ForceCurve(..., time=)")
+    kinds = [segment.kind for segment in curve.segments]
+    if "approach" not in kinds:
+        return curve.time, curve.force, curve.depth, None
+    first = kinds.index("approach")
+    last = kinds.index("retract", first) if "retract" in kinds[first:] else len(kinds)
+    rows = slice(curve.segments[first].start, curve.segments[last - 1].stop)
+    clamps = [segment.clamp for segment in curve.segments[first:last] if segment.clamp]
+    given = "load" if "force" in clamps else "depth"
+    return curve.time[rows] - curve.time[rows.start], curve.force[rows], curve.depth[rows], given

@@ -1,4 +1,4 @@
-"""Maps of force curves: modulus and work of adhesion at each pixel of a grid."""
+"""Maps of force curves: modulus, and work of adhesion or exponent of a power law, at each pixel of a grid."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ._arrays import Floats, centres
 from ._columns import dataset
 from ._core import CaseError
 from ._force_curves import ForceCurve
-from ._indentation import fit_indentation
+from ._indentation import PowerLawFit, fit_indentation
 from ._sealed import ReadOnlyArrays
 from .plot import force_map
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
 #: What a map has of each fit, with the unit: the value, and the ends of its interval.
-_QUANTITIES = {"young": "Pa", "work": "J/m2"}
+_QUANTITIES = {"young": "Pa", "work": "J/m2", "exponent": "1"}
 _ENDS = ("", "_low", "_high")
 
 
@@ -29,14 +29,18 @@ class ForceMap(ReadOnlyArrays):
     """Maps over the pixels of a grid of force curves, [x, y]; NaN where there is no curve, or none that could be fitted. Made by
     :func:`fit_force_map`."""
 
-    #: Young's modulus [Pa] with the ends of its 95 % intervals; the value is NaN where the record does not determine it.
+    #: Young's modulus [Pa], of a power law that after 1 s, with the ends of its 95 % intervals; NaN where the record does not determine it.
     young: Floats
     young_low: Floats
     young_high: Floats
-    #: Work of adhesion [J/m2] with the ends of its 95 % intervals; 0 of the model "hertz".
+    #: Work of adhesion [J/m2] with the ends of its 95 % intervals; 0 of the model "hertz", NaN of a power law.
     work: Floats
     work_low: Floats
     work_high: Floats
+    #: Exponent of a power law with the ends of its 95 % intervals; NaN of other models.
+    exponent: Floats
+    exponent_low: Floats
+    exponent_high: Floats
     #: Depth of first touch [m].
     touch: Floats
     #: Root mean square of the distance from the curve, each channel over its range.
@@ -64,7 +68,7 @@ class ForceMap(ReadOnlyArrays):
         return dataset(maps)
 
     def plot(self, quantity: str = "young", *, ax: Axes | None = None, **style: Any) -> Axes:
-        """Map of "young" or "work", or of an end of their intervals ("young_low", "work_high", ...); what has no value is light, and the title
+        """Map of "young", "work" or "exponent", or of an end of their intervals ("young_low", "work_high", ...); what has no value is light, and the title
         says how many pixels that are. Further arguments go to matplotlib's ``imshow``."""
         return force_map(self, quantity, ax, style)
 
@@ -79,7 +83,7 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str
     curves : with the place of each in its `metadata`: "grid index x", "grid index y", and, of the grid, "grid shape x", "grid shape y" and
         "grid size x", "grid size y" [m] where they are known
     poisson : Poisson's ratio
-    model : "hertz", "dmt", "jkr" or "maugis"
+    model : "hertz", "dmt", "jkr" or "maugis", or "power-law", which takes curves with times: approach and hold
     **how : further arguments of :func:`fit_indentation`: `radius`, or `indenter` and `angle`, and others
 
     Raises
@@ -97,8 +101,8 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str
     >>> found.young.shape, (found.young / 1e6).round(2).tolist()
     ((2, 1), [[1.0], [2.0]])
     """
-    if model in ("viscoelastic", "power-law"):
-        raise CaseError(f'model is "{model}", but a force map takes one of an elastic body: hertz, dmt, jkr or maugis')
+    if model == "viscoelastic":
+        raise CaseError('model is "viscoelastic", but a force map takes hertz, dmt, jkr, maugis or power-law: each curve may have another number of terms')
     placed: dict[tuple[int, int], ForceCurve] = {}
     for n, curve in enumerate(curves):
         if not isinstance(curve, ForceCurve):
@@ -112,7 +116,7 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str
     fits, failures = {}, {}
     for place, curve in placed.items():
         try:
-            fits[place] = fit_indentation(None, curve.force, curve.depth, poisson=poisson, model=model, **how)  # type: ignore[call-overload]
+            fits[place] = fit_indentation(curve, poisson=poisson, model=model, **how)  # type: ignore[call-overload]
         except CaseError as error:
             failures[place] = str(error)
     if not fits:
@@ -123,7 +127,8 @@ def fit_force_map(curves: Iterable[ForceCurve], /, *, poisson: float, model: str
     shape = tuple(max([*stated[k], 1 + max(place[k] for place in placed)]) for k in (0, 1))
     maps = {name: np.full(shape, np.nan) for name in ForceMap.__annotations__ if name not in ("size", "failures", "notes")}
     for place, fit in fits.items():
-        numbers = {name + end: value for name in _QUANTITIES for end, value in zip(_ENDS, getattr(fit, name))}
+        told = {"young": fit.modulus, "exponent": fit.exponent} if isinstance(fit, PowerLawFit) else {"young": fit.young, "work": fit.work}
+        numbers = {name + end: value for name, interval in told.items() for end, value in zip(_ENDS, interval)}
         for name, value in {**numbers, "touch": fit.touch[0], "relative_rms": fit.relative_rms}.items():
             maps[name][place] = value
     sides: list[set[Any]] = [{curve.metadata.get(f"grid size {axis}") for curve in placed.values()} for axis in "xy"]

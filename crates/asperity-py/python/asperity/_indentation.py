@@ -16,10 +16,10 @@ import numpy as np
 from . import _core
 from ._arrays import Counts, Floats, angle as radians, choice, columns, count, number
 from ._core import CaseError
-from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
+from ._force_curves import ForceCurve, ForceFit, Interval, cantilever, fit_force_curve, interval, of_model, sample, share, table
 from ._materials import PowerLaw, Prony
 from ._sealed import ReadOnlyArrays
-from ._words import Branch, Control, Indenter, Interface, LongTime, Model
+from ._words import Branch, Control, Indenter, Interface, LongTime, Model, Weights
 from .plot import recorded
 
 if TYPE_CHECKING:
@@ -38,6 +38,9 @@ class IndentationFit(ReadOnlyArrays):
     instantaneous: Interval
     #: Depth of first touch [m], as (value, low, high); 0 where it was not fitted.
     touch: Interval
+    #: Load of the free indenter at first touch [N] and its slope over the depth [N/m], from the rows before first touch; 0 where there are none.
+    baseline: Interval
+    tilt: Interval
     #: "depth" or "load": the channel that the test controlled.
     given: str
     #: Times [s], load [N] and depth [m] of the record, and model of the other channel [N or m], at the rows that were used.
@@ -90,6 +93,9 @@ class PowerLawFit(ReadOnlyArrays):
     exponent: Interval
     #: Depth of first touch [m], as (value, low, high); 0 where it was not fitted.
     touch: Interval
+    #: Load of the free indenter at first touch [N] and its slope over the depth [N/m], from the rows before first touch; 0 where there are none.
+    baseline: Interval
+    tilt: Interval
     #: "depth" or "load": the channel that the test controlled.
     given: str
     #: Times [s], load [N] and depth [m] of the record, and model of the other channel [N or m], at the rows that were used.
@@ -132,6 +138,7 @@ class _OfCurve(TypedDict, total=False):
 
     branch: Branch
     control: Control | None
+    weights: Weights
     range: float | None
 
 
@@ -145,6 +152,9 @@ class _OfBoth(TypedDict, total=False):
     radius_uncertainty: float
     spring_constant_uncertainty: float
     sensitivity_uncertainty: float
+    thickness: float | None
+    thickness_uncertainty: float
+    interface: Interface
 
 
 class _OfRecord(TypedDict, total=False):
@@ -154,9 +164,6 @@ class _OfRecord(TypedDict, total=False):
     terms: int | None
     long_time: LongTime
     fit_touch: bool
-    thickness: float | None
-    thickness_uncertainty: float
-    interface: Interface
     hardness: float | None
     name: str | None
     springs: int
@@ -173,20 +180,23 @@ class _OfRelaxation(_OfRecord, _OfBoth, total=False):
 
 @overload
 def fit_indentation(
-    time: Any, load: Any, depth: Any, /, *, poisson: float, model: Literal["viscoelastic"] = "viscoelastic", **how: Unpack[_OfRelaxation]
+    time: Any, load: Any = None, depth: Any = None, /, *, poisson: float, model: Literal["viscoelastic"] = "viscoelastic",
+    **how: Unpack[_OfRelaxation]
 ) -> IndentationFit: ...
 @overload
 def fit_indentation(
-    time: Any, load: Any, depth: Any, /, *, poisson: float, model: Literal["power-law"], **how: Unpack[_OfRelaxation]
+    time: Any, load: Any = None, depth: Any = None, /, *, poisson: float, model: Literal["power-law"], **how: Unpack[_OfRelaxation]
 ) -> PowerLawFit: ...
 @overload
-def fit_indentation(time: Any, load: Any, depth: Any, /, *, poisson: float, model: Model, **how: Unpack[_OfForces]) -> ForceFit: ...
 def fit_indentation(
-    time: Any, load: Any, depth: Any, /, *, indenter: str = "sphere", radius: float | None = None, angle: float | None = None, poisson: float,
+    time: Any, load: Any = None, depth: Any = None, /, *, poisson: float, model: Model, **how: Unpack[_OfForces]
+) -> ForceFit: ...
+def fit_indentation(
+    time: Any, load: Any = None, depth: Any = None, /, *, indenter: str = "sphere", radius: float | None = None, angle: float | None = None, poisson: float,
     given: str | None = None, terms: int | None = None, long_time: LongTime = "free", fit_touch: bool = False,
     thickness: float | None = None, interface: Interface = "bonded", hardness: float | None = None, name: str | None = None,
     springs: int = 150, max_misfit: float = 0.1, model: str = "viscoelastic", branch: str = "retraction",
-    control: str | None = None, range: float | None = None, spring_constant: float | None = None, radius_uncertainty: float = 0.0,
+    control: str | None = None, weights: str = "noise", range: float | None = None, spring_constant: float | None = None, radius_uncertainty: float = 0.0,
     thickness_uncertainty: float = 0.0, spring_constant_uncertainty: float = 0.0, sensitivity_uncertainty: float = 0.0
 ) -> IndentationFit | PowerLawFit | ForceFit:
     """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid indenter; or, with
@@ -194,7 +204,9 @@ def fit_indentation(
 
     Parameters
     ----------
-    time, load, depth : the record [s], [N], [m]; the body is undisturbed before its first row, depths count from first touch
+    time, load, depth : the record [s], [N], [m]; the body is undisturbed before its first row, depths count from first touch. Or a `ForceCurve`
+        alone: an elastic model takes the segments of the branch, a relaxation those from the first approach to the last hold before the
+        retraction, with a fitted first touch and `given` from what the hold kept
     indenter : "sphere" (a ball, to any depth up to its radius), "paraboloid" (which a ball is near its apex: Hertz), "cone" or "pyramid" (square)
     radius : of the sphere or paraboloid [m]
     angle : of the cone or pyramid [rad], from the axis to the flank of a cone, to a face (not an edge) of a pyramid
@@ -205,7 +217,7 @@ def fit_indentation(
     long_time : "free", "solid" or "fluid": what happens at times longer than the record
     fit_touch : whether the depth of first touch is fitted too
     thickness : of a thin sample on a rigid base [m], such as a gel or a cell on glass: a half-space would take the stiff base for
-        stiff material. By default the body is a half-space
+        stiff material. By default the body is a half-space; models of adhesion take no other
     interface : of the thin sample to its base: "bonded", or "slip" (it slides without friction)
     hardness, name : of the material
     springs : of the one-dimensional model
@@ -213,9 +225,11 @@ def fit_indentation(
     model : "viscoelastic" (a Prony series), "power-law" (E(t) = E1 (t/1 s)^-alpha: cells, soft glasses; without `terms` and `long_time`), or
         "hertz", "dmt", "jkr" or "maugis": an elastic half-space with the adhesion of that model, which takes a sphere as a paraboloid. The
         times are then not used and may be None; baseline and contact point are fitted; the options above, those of the indenter and
-        `poisson` aside, do not go with it, and `branch`, `control` and `range` go with it alone
+        `poisson` aside, do not go with it, and `branch`, `control`, `weights` and `range` go with it alone
     branch : "retraction" (from the largest load on) or "approach"
     control : "load" or "displacement", where the sphere comes off; by default that of the spring, where its constant is given, else displacement
+    weights : "noise" (a row counts by the noise of both channels, and by the scatter in contact and off it), or "none": all alike, without
+        adhesion by their loads alone, as other programs do it
     range : of the attraction [m], for "maugis" in place of a fitted transition, and for Tabor's number of the other models
     spring_constant : of the cantilever whose deflection is the load [N/m]
     radius_uncertainty, thickness_uncertainty, spring_constant_uncertainty : standard uncertainties (one standard deviation) [m], [m],
@@ -277,11 +291,18 @@ def fit_indentation(
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
     size = _size(indenter, radius, angle)
+    if isinstance(time, ForceCurve):
+        if load is not None or depth is not None:
+            raise CaseError("load and depth are those of the force curve: leave them out")
+        time, load, depth, kept = of_model(time, model, branch)
+        fit_touch, given = fit_touch or model not in get_args(Model), given or (None if model in get_args(Model) else kept)
+    elif load is None or depth is None:
+        raise CaseError("load and depth are missing: give time, load and depth, or a ForceCurve")
     if model in get_args(Model):
-        if thickness is not None:
+        if thickness is not None and model != "hertz":
             raise CaseError(
                 f"thickness is {thickness}, but the model {model!r} has the closed form of a half-space, and there is none for adhesion on a thin"
-                ' sample: leave it out. The model "viscoelastic" with terms=0 fits an elastic thin sample without adhesion'
+                ' sample: leave it out. The model "hertz" fits an elastic thin sample without adhesion'
             )
         for what in (name for name in _OfRecord.__annotations__ if told[name] != usual[name]):
             raise CaseError(f"{what} goes with the model \"viscoelastic\", but model is {model!r}: leave it out")
@@ -295,10 +316,7 @@ def fit_indentation(
         raise CaseError(f"{what} goes with the model \"viscoelastic\": a power law has no terms and no end; leave it out")
     times, loads, depths = columns(time=time, load=load, depth=depth)
     most = None if terms is None else count("terms", terms, 0)
-    choice("interface", interface, Interface)
-    if thickness is None and interface != "bonded":
-        raise CaseError("interface is that of a thin sample to its base: give its thickness too")
-    thin = None if thickness is None else (number("thickness", thickness), nu, interface)
+    thin = sample(thickness, interface, nu)
     how = given, most, long_time, bool(fit_touch), thin, count("springs", springs), number("max_misfit", max_misfit)
     spring, of_spring = cantilever(spring_constant, spring_constant_uncertainty, sensitivity_uncertainty)
     of_radius = share("radius", radius_uncertainty, None if radius is None else size)
@@ -307,7 +325,7 @@ def fit_indentation(
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
     rows = np.asarray(found["rows"], dtype=np.int64)
-    record = {"rows": rows, "time": times[rows], "load": loads[rows], "depth": depths[rows], "touch": interval(found["touch"])}
+    record = {"rows": rows, "time": times[rows], "load": loads[rows], "depth": depths[rows], **{name: interval(found[name]) for name in ("touch", "baseline", "tilt")}}
     of_body = dict(poisson=nu, hardness=hardness, name=name, window=found["window"])
     if power_law:
         law = PowerLaw(young=factor * found["modulus"][0], alpha=found["exponent"][0], **of_body)

@@ -600,7 +600,7 @@ def recorded(along: tuple[str, str, Floats], name: str, measured: Floats, model:
 
 
 #: What the maps of force curves show.
-_OF_CURVES = {"young": ("Young's modulus", "Pa"), "work": ("work of adhesion", "J/m²")}
+_OF_CURVES = {"young": ("Young's modulus", "Pa"), "work": ("work of adhesion", "J/m²"), "exponent": ("exponent of the power law", "1")}
 _ENDS = {"": "", "_low": "lower end of the 95 % interval", "_high": "upper end of the 95 % interval"}
 
 

@@ -18,6 +18,7 @@
 //! changes load and depth together, so the fit is repeated with it. Records seldom determine λ well, and then the sum of squares is far
 //! from quadratic in it: its interval is that of the profile likelihood, and those of the other numbers are of all λ inside.
 
+mod body;
 mod notes;
 mod rows;
 mod search;
@@ -25,7 +26,8 @@ mod search;
 mod tests;
 
 use crate::error::{Error, Result, positive, require};
-use crate::indentation::{Interval, SENSITIVITY, WIDTH, check_shares};
+use crate::indentation::{Interval, Line, SENSITIVITY, SampleLayer, WIDTH, check_shares};
+use crate::numbers::extent;
 use crate::reference::{AdhesiveModel, AdhesiveSphere, MdrProfile, carpick_alpha, maugis_lambda, tabor};
 use rows::Rows;
 use search::{Found, Problem};
@@ -75,6 +77,17 @@ pub enum PullOffControl {
     Displacement,
 }
 
+/// How rows count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+pub enum Weights {
+    /// By the noise of both channels, and by the scatter in contact and off it.
+    #[default]
+    Noise,
+    /// All alike, without adhesion by their loads alone: plain least squares, as other programs do it.
+    None,
+}
+
 /// Options of the fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceOptions {
@@ -84,10 +97,16 @@ pub struct ForceOptions {
     pub branch: Branch,
     /// What the test controlled; default: the height of the cantilever where its spring constant is given, else the displacement.
     pub control: Option<PullOffControl>,
+    /// How rows count, default by their noise.
+    pub weights: Weights,
     /// Range of the attraction w/s0 \[m\]. Maugis' λ then follows from E* and w; by default it is fitted.
     pub range: Option<f64>,
     /// Standard uncertainty of the radius over the radius, or of the slope of a cone or pyramid over the slope; default 0.
     pub radius_uncertainty: f64,
+    /// The thin sample of a fit without adhesion, if it is not as deep as a half-space.
+    pub layer: Option<SampleLayer>,
+    /// Standard uncertainty of the thickness of a thin sample over the thickness, default 0.
+    pub thickness_uncertainty: f64,
     /// Spring constant of the cantilever whose deflection is the load \[N/m\].
     pub spring_constant: Option<f64>,
     /// Standard uncertainty of the scale of the load, that is of the spring constant, over its value, default 0.
@@ -113,8 +132,10 @@ pub struct ForceFit {
     pub alpha: Option<f64>,
     /// Depth of first touch \[m\], in the zero of the record.
     pub touch: Interval,
-    /// Load of the free sphere \[N\].
+    /// Load of the free sphere at first touch \[N\], and its slope over the depth \[N/m\]; 0 where the record does not show it.
     pub baseline: Interval,
+    /// See `baseline`.
+    pub tilt: Interval,
     /// Load at pull-off of the model under the control of the test \[N\], without the baseline.
     pub pull_off_force: f64,
     /// Smallest load of the fitted rows \[N\], without the baseline.
@@ -141,6 +162,8 @@ pub struct ForceFit {
 const ATOMIC: f64 = 0.3e-9;
 /// A change of the deflection's scale for its effect on the result.
 const CHANGE: f64 = 1e-3;
+/// Part of the depths in contact by which first touch may lie before the first row.
+const BEFORE: f64 = 0.1;
 /// Largest relative distance from the curve.
 const MISFIT: f64 = 0.1;
 
@@ -173,14 +196,21 @@ pub fn fit_force_curve(
 ) -> Result<ForceFit> {
     check(profile, options)?;
     let radius = profile.radius().unwrap_or(1.0);
-    let rows = Rows::new(record, options)?;
-    let fitted = rows.averaged();
-    let problem = Problem::new(profile, &fitted, options);
-    let whole = Problem::new(profile, &rows, options);
-    let found = problem.solve()?;
+    let (rows, body) = Rows::new(profile, record, options)?;
+    let rows = rows.alike(options);
+    let mut fitted = rows.averaged();
+    let mut found = Problem::new(&body, &fitted, options).solve()?;
+    for _ in 0..options.weights.rounds() {
+        fitted = fitted.weighted(found.scatter);
+        found = Problem::new(&body, &fitted, options).solve_from(&found.at)?;
+    }
+    let problem = Problem::new(&body, &fitted, options);
+    let whole = Problem::new(&body, &rows, options);
     let misfit = whole.misfit(&found.at);
+    // Noise is no misfit.
+    let noise = (rows.noise[0] / rows.spans[0]).hypot(rows.noise[1] / rows.spans[1]);
     require(
-        misfit <= MISFIT,
+        misfit <= MISFIT.max(2.0 * noise),
         "misfit of the force curve",
         format!("{:.1} % of its range (rms)", 100.0 * misfit),
         format!(
@@ -188,11 +218,12 @@ pub fn fit_force_curve(
             100.0 * MISFIT
         ),
     )?;
+    require_touch(problem.shifts(&found.at).touch, &rows, options)?;
     // Of ln E* and ln w, one for an error of the deflection's scale.
     let by_deflection = match (options.spring_constant, options.sensitivity_uncertainty > 0.0) {
         (Some(stiffness), true) => {
             let changed = fitted.with_deflection(CHANGE, stiffness);
-            let moved = Problem::new(profile, &changed, options).solve_from(&found.at)?;
+            let moved = Problem::new(&body, &changed, options).solve_from(&found.at)?;
             [0, 1].map(|k| (moved.logarithms()[k] - found.logarithms()[k]) / CHANGE)
         }
         _ => [0.0; 2],
@@ -229,16 +260,14 @@ pub fn fit_force_curve(
         logarithmic(value, [low - own, high - own])
     };
     // Of ln E* for one of the size of the indenter; with adhesion by scaling.
-    let deepest = rows.depths[1] - problem.shifts(&found.at)[0];
-    let by_size = match adhesive {
-        true => 0.5,
-        false => {
-            let [more, less] =
-                [1.0 + CHANGE, 1.0 - CHANGE].map(|times| profile.scaled(times).unit_load(deepest));
-            (more / less).ln() / (2.0 * CHANGE)
-        }
+    let shifts = problem.shifts(&found.at);
+    let deepest = rows.depths[1] - shifts.touch;
+    let [by_size, by_thickness] = match adhesive {
+        true => [-0.5, 0.0],
+        false => body::exponents(profile, options.layer, deepest)?,
     };
-    let contact_modulus = interval(modulus, &[1.0], stated(by_size, 1.0, by_deflection[0]));
+    let of_thickness = (by_thickness * options.thickness_uncertainty).powi(2);
+    let contact_modulus = interval(modulus, &[1.0], stated(by_size, 1.0, by_deflection[0]) + of_thickness);
     let work = match adhesive {
         true => interval(work, &[0.0, 1.0], stated(1.0, 1.0, by_deflection[1])),
         false => Interval::exact(0.0),
@@ -267,11 +296,11 @@ pub fn fit_force_curve(
         let half = WIDTH * deviation;
         Interval { value, low: value - half, high: value + half, determined: half.is_finite() }
     };
-    let [touch, baseline] = problem.shifts(&found.at);
-    let [touch_deviation, baseline_deviation] = problem.shift_deviations(&found);
+    let [of_touch, of_baseline, of_tilt] = problem.shift_deviations(&found);
+    let line = Line { load: shifts.load - shifts.slope * shifts.touch, slope: shifts.slope };
     let sphere = model.map(|model| AdhesiveSphere::of(model, radius, modulus, problem.work(&found.at)));
     let nearest = whole.nearest(&found.at);
-    let smallest_load = rows.smallest_load() - baseline;
+    let smallest_load = rows.pressed(line).fold(f64::INFINITY, f64::min);
     let mut fit = ForceFit {
         model: options.model,
         contact_modulus,
@@ -279,8 +308,9 @@ pub fn fit_force_curve(
         lambda,
         range,
         alpha,
-        touch: linear(touch, touch_deviation),
-        baseline: linear(baseline, baseline_deviation),
+        touch: linear(shifts.touch, of_touch),
+        baseline: linear(shifts.load, of_baseline),
+        tilt: linear(shifts.slope, of_tilt),
         pull_off_force: sphere.map_or(0.0, |sphere| sphere.pull_off(options.stiffness()).load),
         smallest_load,
         tabor: match model {
@@ -296,8 +326,18 @@ pub fn fit_force_curve(
         durbin_watson: found.durbin_watson,
         notes: vec![],
     };
-    fit.notes = notes::notes(&fit, profile, deepest, &rows, options);
+    fit.notes = notes::notes(&fit, profile, deepest, &rows, line, options);
     Ok(fit)
+}
+
+impl Weights {
+    /// How often rows are weighted by their scatter about the curve.
+    fn rounds(self) -> usize {
+        match self {
+            Weights::Noise => 2,
+            Weights::None => 0,
+        }
+    }
 }
 
 impl ForceOptions {
@@ -311,6 +351,20 @@ impl ForceOptions {
     }
 }
 
+/// Refuses a first touch that the record does not show.
+fn require_touch(touch: f64, rows: &Rows, options: &ForceOptions) -> Result<()> {
+    let [smallest, largest] = extent(rows.contact.iter().chain(&rows.free).map(|row| row[1]));
+    // A branch with attraction holds first touch.
+    let slack = BEFORE * (rows.depths[1] - rows.depths[0]);
+    require(
+        options.model != ForceModel::Hertz || (smallest - slack..largest).contains(&touch),
+        "depth of first touch",
+        format!("{touch:.3e} m, outside of the record ({smallest:.3e} m to {largest:.3e} m)"),
+        "inside: the load of the free sphere is not known; keep the rows before contact, or subtract their load and start the record at first \
+         touch",
+    )
+}
+
 fn check(profile: MdrProfile, options: &ForceOptions) -> Result<()> {
     profile.validate()?;
     require(
@@ -318,6 +372,12 @@ fn check(profile: MdrProfile, options: &ForceOptions) -> Result<()> {
         "indenter of a model with adhesion",
         "a cone or a pyramid",
         "a sphere; without adhesion use the model `hertz`",
+    )?;
+    require(
+        options.model == ForceModel::Hertz || options.layer.is_none(),
+        "sample of a model with adhesion",
+        "a thin one",
+        "a half-space: there is no closed form of adhesion on a thin sample; without adhesion use the model `hertz`",
     )?;
     for (what, value, unit) in
         [("range", options.range, "m"), ("spring constant", options.spring_constant, "N/m")]
@@ -328,6 +388,7 @@ fn check(profile: MdrProfile, options: &ForceOptions) -> Result<()> {
     }
     let sources = [
         ("radius", options.radius_uncertainty),
+        ("thickness", options.thickness_uncertainty),
         ("load", options.load_uncertainty),
         (SENSITIVITY, options.sensitivity_uncertainty),
     ];
@@ -342,4 +403,13 @@ fn logarithmic(value: f64, ends: [f64; 2]) -> Interval {
 
 fn invalid<T>(what: &str, value: impl std::fmt::Display, expected: impl Into<String>) -> Result<T> {
     Err(Error::invalid(what, value, expected))
+}
+
+/// Refuses a depth that does not grow with the load.
+fn turned<T>() -> Result<T> {
+    invalid(
+        "depth of the force curve",
+        "not larger where the load is larger",
+        "larger where the sphere is pressed deeper: depth = height less deflection; turn the sign of the column",
+    )
 }

@@ -2,7 +2,7 @@
 
 use super::rows::Rows;
 use super::{ATOMIC, Branch, ForceFit, ForceModel, ForceOptions};
-use crate::indentation::{ALIKE, of_indenter, unlikely_radius};
+use crate::indentation::{ALIKE, Baseline, Line, of_indenter, unlikely_radius};
 use crate::reference::MdrProfile;
 
 /// Noise of the depth over its range beyond which the rows are no longer near their points of the curve.
@@ -11,6 +11,8 @@ const NOISY: f64 = 0.02;
 /// Tabor numbers at which JKR begins to hold and DMT ceases to.
 const SOFT: f64 = 3.0;
 const STIFF: f64 = 0.3;
+/// A bend of the baseline below this fraction of the loads is not told.
+const BENT: f64 = 0.01;
 /// Smallest number of rows with attraction.
 const FEW: usize = 10;
 /// Radius of the contact over that of the sphere beyond which the paraboloid is another body: its load is 4 % off.
@@ -26,6 +28,7 @@ pub(super) fn notes(
     profile: MdrProfile,
     deepest: f64,
     rows: &Rows,
+    line: Line,
     options: &ForceOptions,
 ) -> Vec<String> {
     let mut notes = vec![];
@@ -59,18 +62,12 @@ pub(super) fn notes(
             "Tabor's number is {tabor:.2e} with {range}, and {rule}: use the model `maugis`{or}"
         ));
     }
-    if !rows.baseline {
-        notes.push(
-            "the load of the free sphere is taken as 0: the fitted part of the record has no flat end, so pull-off is outside of the record and \
-             the baseline is not fitted"
-                .to_owned(),
-        );
-    }
-    if rows.drift > 0.0 {
+    notes.extend(of_baseline(rows));
+    if rows.paused > 0 {
         notes.push(format!(
-            "the load of the free sphere drifts by {:.3e} N: the same drift under the contact changes modulus and work of adhesion and is not in \
-             the intervals; subtract it from the record first",
-            rows.drift
+            "{} rows of a pause under load are left out: an elastic body does not relax; fit approach and pause by the model `viscoelastic` or \
+             `power-law`",
+            rows.paused
         ));
     }
     let share = rows.noise[1] / rows.spans[1];
@@ -81,8 +78,7 @@ pub(super) fn notes(
             100.0 * share
         ));
     }
-    let baseline = fit.baseline.value;
-    let attracted = rows.contact.iter().filter(|row| row[0] < baseline - rows.noise[0]).count();
+    let attracted = rows.pressed(line).filter(|load| *load < -rows.noise[0]).count();
     if adhesive && attracted < FEW {
         notes.push(format!(
             "{attracted} rows show attraction, and the work of adhesion rests on them: record at least {FEW}, with more points per second \
@@ -90,8 +86,8 @@ pub(super) fn notes(
         ));
     }
     // A load at which the sphere came off, other than that of the model. Where rows are far apart the last one lies before pull-off.
-    if adhesive && rows.baseline && options.branch == Branch::Retraction {
-        let measured = rows.contact.last().map_or(fit.smallest_load, |row| row[0] - baseline);
+    if adhesive && rows.baseline != Baseline::Unknown && options.branch == Branch::Retraction {
+        let measured = rows.pressed(line).last().unwrap_or(fit.smallest_load);
         let far = |load: f64| {
             (load - fit.pull_off_force).abs() > PULL * fit.pull_off_force.abs() + 5.0 * rows.noise[0]
         };
@@ -115,7 +111,7 @@ pub(super) fn notes(
                 ));
             }
         }
-        _ => notes.extend(of_indenter(profile, deepest, fit.relative_rms, false)),
+        _ => notes.extend(of_indenter(profile, deepest, fit.relative_rms, options.layer.is_some())),
     }
     if fit.durbin_watson < ALIKE {
         notes.push(format!(
@@ -142,4 +138,25 @@ pub(super) fn notes(
         }
     }
     notes
+}
+
+/// What is not known about the load of the free sphere.
+fn of_baseline(rows: &Rows) -> Option<String> {
+    match rows.baseline {
+        Baseline::Unknown => Some(
+            "the load of the free sphere is taken as 0: the fitted part of the record does not show the free sphere, so its load is not fitted"
+                .to_owned(),
+        ),
+        Baseline::Flat => Some(
+            "the load of the free sphere is taken as the same at all depths: the record shows it too shortly for a slope; a tilt of it would change \
+             the modulus and is not in the intervals"
+                .to_owned(),
+        ),
+        Baseline::Tilted if rows.bend > BENT * rows.spans[0] => Some(format!(
+            "the load of the free sphere bends away from a straight line by {:.3e} N: the same bend under the contact changes the modulus \
+             and the work of adhesion and is not in the intervals; leave out the rows far from the body",
+            rows.bend
+        )),
+        Baseline::Tilted => None,
+    }
 }

@@ -5,21 +5,20 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
+use super::body::Body;
 use super::rows::Rows;
-use super::{ForceModel, ForceOptions, invalid};
+use super::{ForceModel, ForceOptions, turned};
 use crate::error::Result;
-use crate::indentation::{covariance, damped_step, durbin_watson};
+use crate::indentation::{Baseline, correlation, covariance, damped_step, durbin_watson};
 use crate::material::dot;
 use crate::numbers::bisect;
-use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, MdrProfile, maugis_lambda};
+use crate::reference::{AdhesiveModel, AdhesiveSphere, BarPoint, maugis_lambda};
 
 /// Points of the curve among which the nearest is looked for first.
 const POINTS: usize = 64;
 /// Step of the parameter of the curve below which its nearest point is found.
 const NEAR: f64 = 1e-12;
 const MOST_ITERATIONS: usize = 100;
-/// Number of rows of the first search.
-const SOME: usize = 400;
 /// A decrease of the sum of squares below this is slow; this number of consecutive slow decreases ends the search.
 const SLOW: f64 = 1e-8;
 const PATIENCE: usize = 2;
@@ -28,16 +27,20 @@ const STEP: f64 = 1e-5;
 /// Values of λ from which the search begins, and its limits: beyond, DMT and JKR differ from Maugis' model by less than any record.
 const STARTS: [f64; 3] = [0.15, 0.8, 4.0];
 const LAMBDA: [f64; 2] = [1e-3, 300.0];
-/// A residual correlation beyond which the number of independent rows is not known.
-const CORRELATED: f64 = 0.98;
+/// Fewer rows in contact, or free ones, have the scatter of all.
+const OWN: usize = 8;
+/// Degrees of freedom at least: where fewer are left the correlation itself is not known.
+const LEAST_FREEDOM: f64 = 3.0;
+/// Smallest scatter in units of the noise: the noise itself may be that of rounding.
+const LEAST: f64 = 0.1;
 /// 95 % of the chi-squared distribution of one degree of freedom.
 const CHI: f64 = 3.841_459;
 
-/// Rows and model. Parameters: ln E*, ln w, ln λ (of Maugis without a range), then depth of first touch and load of the free sphere over
-/// the spans of the record.
+/// Rows and model. Parameters: ln E*, ln w, ln λ (of Maugis without a range), then depth of first touch, load of the free sphere there and the
+/// slope of that load, over the spans of the record.
 #[derive(Clone, Copy)]
 pub(super) struct Problem<'a> {
-    profile: MdrProfile,
+    body: &'a Body,
     /// Of the sphere, with adhesion.
     radius: f64,
     rows: &'a Rows,
@@ -55,8 +58,8 @@ pub(super) struct Found {
     /// The parameters that the covariance has; the others are fixed or have no effect.
     kept: Vec<usize>,
     squares: f64,
-    /// Of a residual, larger where neighbours are alike.
-    scatter: f64,
+    /// Standard deviations of a residual in contact and off it, larger where neighbours are alike.
+    pub(super) scatter: [f64; 2],
     pub(super) durbin_watson: f64,
 }
 
@@ -64,6 +67,13 @@ impl Found {
     /// ln E*, ln w.
     pub(super) fn logarithms(&self) -> [f64; 2] {
         [self.at[0], self.at[1]]
+    }
+
+    /// Of the parameters that are fitted.
+    pub(super) fn deviation(&self, k: usize) -> f64 {
+        let mut direction = vec![0.0; self.at.len()];
+        direction[k] = 1.0;
+        self.variance(&direction).sqrt()
     }
 
     /// Variance of the sum of the parameters with these factors.
@@ -77,12 +87,6 @@ impl Found {
         let own: Vec<f64> = self.kept.iter().map(factor).collect();
         covariance.iter().zip(&own).map(|(line, x)| x * dot(line, &own)).sum::<f64>().max(0.0)
     }
-
-    fn deviation(&self, k: usize) -> f64 {
-        let mut direction = vec![0.0; self.at.len()];
-        direction[k] = 1.0;
-        self.variance(&direction).sqrt()
-    }
 }
 
 /// The points of the curve nearest to the rows.
@@ -93,25 +97,29 @@ pub(super) struct Nearest {
 }
 
 /// A curve of load over depth in bars, by a parameter that grows with the depth.
-#[derive(Clone, Copy, PartialEq)]
-enum Law {
+#[derive(Clone, Copy)]
+enum Law<'a> {
     /// An elastic contact without adhesion; the parameter is the depth, in the unit of length `unit` \[m\].
-    Elastic { profile: MdrProfile, unit: f64 },
+    Elastic { body: &'a Body, unit: f64 },
     /// A sphere that adheres.
     Adhesive(AdhesiveModel),
 }
 
-impl Law {
+impl Law<'_> {
     fn at(self, u: f64) -> BarPoint {
         match self {
-            Law::Elastic { profile, unit } => {
-                let depth = (u * unit).max(0.0);
-                let radius = profile.reach(depth) / unit;
-                let load = profile.unit_load(depth) / (unit * unit);
+            Law::Elastic { body, unit } => {
+                let radius = body.reach(u * unit) / unit;
+                let load = body.load(u * unit) / (unit * unit);
                 BarPoint { radius, load, depth: u, load_slope: 2.0 * radius, depth_slope: 1.0 }
             }
             Law::Adhesive(model) => model.at(u),
         }
+    }
+
+    /// Whether it is another curve.
+    fn differs(self, other: Law) -> bool {
+        matches!((self, other), (Law::Adhesive(one), Law::Adhesive(two)) if one != two)
     }
 
     /// The ends of the part of the curve between these depths; it ends where the sphere comes off under any control.
@@ -123,34 +131,55 @@ impl Law {
     }
 }
 
+/// Depth of first touch \[m\], load of the free sphere there \[N\] and the slope of that load over the depth \[N/m\].
+#[derive(Clone, Copy)]
+pub(super) struct Shifts {
+    pub(super) touch: f64,
+    pub(super) load: f64,
+    pub(super) slope: f64,
+}
+
 /// Where the curve lies in the units of the record.
 #[derive(Clone, Copy)]
-struct Frame {
-    law: Law,
+struct Frame<'a> {
+    law: Law<'a>,
     units: [f64; 2],
     /// Unit of the radius of the contact \[m\].
     width: f64,
-    shifts: [f64; 2],
+    shifts: Shifts,
     noise: [f64; 2],
 }
 
-impl Frame {
+impl Frame<'_> {
+    /// Load at a point of the curve, with that of the free sphere.
+    fn load(&self, point: &BarPoint) -> f64 {
+        self.shifts.load + self.shifts.slope * self.units[1] * point.depth + self.units[0] * point.load
+    }
+
+    /// Load of a free row less that of the free sphere.
+    fn off(&self, [load, depth]: [f64; 2]) -> f64 {
+        load - self.shifts.load - self.shifts.slope * (depth - self.shifts.touch)
+    }
+
     /// Distance of load and depth from a point of the curve, in standard deviations.
     fn apart(&self, [load, depth]: [f64; 2], point: &BarPoint) -> [f64; 2] {
-        let curve =
-            [self.shifts[1] + self.units[0] * point.load, self.shifts[0] + self.units[1] * point.depth];
-        [(load - curve[0]) / self.noise[0], (depth - curve[1]) / self.noise[1]]
+        let into = self.units[1] * point.depth;
+        [(load - self.load(point)) / self.noise[0], (depth - self.shifts.touch - into) / self.noise[1]]
     }
 
     /// Change of the curve along its parameter, in standard deviations.
     fn along(&self, point: &BarPoint) -> [f64; 2] {
-        [self.units[0] * point.load_slope / self.noise[0], self.units[1] * point.depth_slope / self.noise[1]]
+        let depth = self.units[1] * point.depth_slope;
+        [
+            (self.units[0] * point.load_slope + self.shifts.slope * depth) / self.noise[0],
+            depth / self.noise[1],
+        ]
     }
 }
 
 /// The stable branch at some parameters.
-struct Curve {
-    frame: Frame,
+struct Curve<'a> {
+    frame: Frame<'a>,
     ends: [f64; 2],
     table: Vec<(f64, BarPoint)>,
 }
@@ -164,7 +193,7 @@ struct Foot {
     last: bool,
 }
 
-impl Curve {
+impl Curve<'_> {
     fn nearest(&self, row: [f64; 2]) -> Foot {
         let Frame { law, .. } = self.frame;
         let distance = |point: &BarPoint| {
@@ -205,8 +234,8 @@ fn inner([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 }
 
 impl<'a> Problem<'a> {
-    pub(super) fn new(profile: MdrProfile, rows: &'a Rows, options: &'a ForceOptions) -> Self {
-        Problem { profile, radius: profile.radius().unwrap_or(1.0), rows, options, held: false }
+    pub(super) fn new(body: &'a Body, rows: &'a Rows, options: &'a ForceOptions) -> Self {
+        Problem { body, radius: body.profile.radius().unwrap_or(1.0), rows, options, held: false }
     }
 
     fn adhesive(&self) -> bool {
@@ -220,8 +249,13 @@ impl<'a> Problem<'a> {
 
     /// Numbers of the parameters that are fitted.
     fn fitted(&self) -> Vec<usize> {
-        let wanted = [true, self.adhesive(), self.free_lambda() && !self.held, true, self.rows.baseline];
-        (0..5).filter(|k| wanted[*k]).collect()
+        let [offset, tilt] = match self.rows.baseline {
+            Baseline::Unknown => [false; 2],
+            Baseline::Flat => [true, false],
+            Baseline::Tilted => [true; 2],
+        };
+        let wanted = [true, self.adhesive(), self.free_lambda() && !self.held, true, offset, tilt];
+        (0..wanted.len()).filter(|k| wanted[*k]).collect()
     }
 
     /// The model of adhesion; `None` without.
@@ -244,35 +278,41 @@ impl<'a> Problem<'a> {
         at[1].exp()
     }
 
-    /// Depth of first touch \[m\] and load of the free sphere \[N\].
-    pub(super) fn shifts(&self, at: &[f64]) -> [f64; 2] {
-        [at[3] * self.rows.spans[1], at[4] * self.rows.spans[0]]
+    /// Units of the last three parameters.
+    fn shift_units(&self) -> [f64; 3] {
+        let [load, depth] = self.rows.spans;
+        [depth, load, load / depth]
     }
 
-    pub(super) fn shift_deviations(&self, found: &Found) -> [f64; 2] {
-        let baseline = if self.rows.baseline { found.deviation(4) * self.rows.spans[0] } else { 0.0 };
-        [found.deviation(3) * self.rows.spans[1], baseline]
+    pub(super) fn shifts(&self, at: &[f64]) -> Shifts {
+        let [of_touch, of_load, of_slope] = self.shift_units();
+        Shifts { touch: at[3] * of_touch, load: at[4] * of_load, slope: at[5] * of_slope }
     }
 
-    fn frame(&self, at: &[f64]) -> Frame {
-        let [touch, baseline] = self.shifts(at);
+    /// Standard deviations of touch, load and slope; 0 of what is not fitted.
+    pub(super) fn shift_deviations(&self, found: &Found) -> [f64; 3] {
+        let (units, fitted) = (self.shift_units(), self.fitted());
+        [0, 1, 2].map(|k| if fitted.contains(&(3 + k)) { found.deviation(3 + k) * units[k] } else { 0.0 })
+    }
+
+    fn frame(&self, at: &[f64]) -> Frame<'a> {
         let modulus = at[0].exp();
         let (law, units, width) = match self.model(at) {
             None => {
                 let unit = self.rows.spans[1];
-                (Law::Elastic { profile: self.profile, unit }, [modulus * unit * unit, unit], unit)
+                (Law::Elastic { body: self.body, unit }, [modulus * unit * unit, unit], unit)
             }
             Some(model) => {
                 let units = AdhesiveSphere::of(model, self.radius, modulus, self.work(at)).units();
                 (Law::Adhesive(model), units, (units[1] * self.radius).sqrt())
             }
         };
-        Frame { law, units, width, shifts: [touch, baseline], noise: self.rows.noise }
+        Frame { law, units, width, shifts: self.shifts(at), noise: self.rows.noise }
     }
 
-    fn curve(&self, at: &[f64]) -> Curve {
+    fn curve(&self, at: &[f64]) -> Curve<'a> {
         let frame = self.frame(at);
-        let Frame { law, units, shifts: [touch, _], .. } = frame;
+        let Frame { law, units, shifts: Shifts { touch, .. }, .. } = frame;
         let [smallest, largest] = self.rows.depths;
         let deepest = largest + 0.05 * self.rows.spans[1];
         let [first, last] = law.between([smallest, deepest].map(|depth| (depth - touch) / units[1]));
@@ -294,16 +334,16 @@ impl<'a> Problem<'a> {
 
     /// Distances in standard deviations: load and depth of each row in contact, then loads of free rows.
     fn residuals(&self, at: &[f64], feet: &[Foot]) -> Vec<f64> {
-        let [_, baseline] = self.shifts(at);
-        let free = self.rows.free.iter().map(|w| (w - baseline) / self.rows.noise[0]);
+        let frame = self.frame(at);
+        let free = self.rows.free.iter().map(|row| frame.off(*row) / self.rows.free_noise);
         feet.iter().flat_map(|foot| foot.apart).chain(free).collect()
     }
 
     pub(super) fn nearest(&self, at: &[f64]) -> Nearest {
         let (frame, feet) = (self.frame(at), self.feet(at));
-        let loads = feet.iter().map(|foot| frame.shifts[1] + frame.units[0] * foot.point.load);
+        let loads = feet.iter().map(|foot| frame.load(&foot.point));
         Nearest {
-            loads: loads.chain(self.rows.free.iter().map(|_| frame.shifts[1])).collect(),
+            loads: loads.chain(self.rows.free.iter().map(|row| row[0] - frame.off(*row))).collect(),
             contact_radius: frame.width * feet.iter().map(|foot| foot.point.radius).fold(0.0, f64::max),
         }
     }
@@ -319,36 +359,33 @@ impl<'a> Problem<'a> {
         (sum / self.rows.contact.len() as f64).sqrt()
     }
 
-    /// From the largest load, the smallest one and the depths between.
+    /// Without adhesion that of the rows; with it from the largest load, the smallest one and the depths between.
     fn start(&self, lambda: f64) -> Option<Vec<f64>> {
-        let rows = &self.rows.contact;
-        let rest = self.rows.rest;
-        let top = rows.first()?;
-        let shift = |at: [f64; 2], touch: f64| {
-            vec![at[0], at[1], lambda.ln(), touch / self.rows.spans[1], rest / self.rows.spans[0]]
+        let line = self.rows.line;
+        let shift = |[modulus, work]: [f64; 2], touch: f64| {
+            let [of_touch, of_load, of_slope] = self.shift_units();
+            let shifts = [touch / of_touch, line.at(touch) / of_load, line.slope / of_slope];
+            [modulus.ln(), work.ln(), lambda.ln()].into_iter().chain(shifts).collect::<Vec<f64>>()
         };
-        let largest = top[0] - rest;
-        if largest <= 0.0 {
-            return None;
+        if let Some(start) = self.rows.start {
+            return Some(shift([start.modulus, 1.0], start.touch));
         }
         if !self.adhesive() {
-            // W ∝ depth^(3/2) of a paraboloid, depth² of a cone: a quarter of the load is at 0.397 or 0.5 of the depth.
-            let quarter = rows.iter().rev().find(|row| row[0] - rest > 0.25 * largest)?;
-            let share = if self.profile.radius().is_some() { 0.25f64.powf(2.0 / 3.0) } else { 0.5 };
-            let depth = (top[1] - quarter[1]) / (1.0 - share);
-            if depth <= 0.0 {
-                return None;
-            }
-            let modulus = largest / self.profile.unit_load(depth);
-            return Some(shift([modulus.ln(), 0.0], top[1] - depth));
+            return None;
+        }
+        let rows: Vec<[f64; 2]> = self.rows.contact.iter().map(|[w, d]| [w - line.at(*d), *d]).collect();
+        let top = rows.first()?;
+        let largest = top[0];
+        if largest <= 0.0 {
+            return None;
         }
         let lowest = rows.iter().min_by(|a, b| a[0].total_cmp(&b[0]))?;
         let model = match self.options.model {
             ForceModel::Maugis => AdhesiveModel::Maugis { lambda },
-            _ => self.model(&[0.0; 5])?,
+            _ => self.model(&[0.0; 6])?,
         };
         let end = model.at(model.end(0.0));
-        let unit = (rest - lowest[0]) / -end.load;
+        let unit = lowest[0] / end.load;
         let ends = [model.end(0.0), model.beyond((largest / unit).powf(2.0 / 3.0) + 10.0)];
         let pressed = model.at(bisect(ends, 80, |u| model.at(u).load < largest / unit)[0]);
         let depth = (top[1] - lowest[1]) / (pressed.depth - end.depth);
@@ -358,24 +395,16 @@ impl<'a> Problem<'a> {
         let work = unit / (PI * self.radius);
         // depth³ = π² w² R/K²
         let modulus = 0.75 * PI * work * (self.radius / depth.powi(3)).sqrt();
-        Some(shift([modulus.ln(), work.ln()], top[1] - pressed.depth * depth))
+        Some(shift([modulus, work], top[1] - pressed.depth * depth))
     }
 
-    /// The best of the searches, which have some of the rows; all rows from there on.
+    /// The best of the searches.
     pub(super) fn solve(&self) -> Result<Found> {
-        if let Some(some) = self.rows.thinned(SOME) {
-            let found = Problem { rows: &some, ..*self }.solve()?;
-            return self.solve_from(&found.at);
-        }
         let starts = if self.free_lambda() { &STARTS[..] } else { &STARTS[..1] };
         let found = starts.iter().filter_map(|lambda| self.solve_from(&self.start(*lambda)?).ok());
         match found.min_by(|a, b| a.squares.total_cmp(&b.squares)) {
             Some(found) => Ok(found),
-            None => invalid(
-                "depth of the force curve",
-                "not larger where the load is larger",
-                "larger where the sphere is pressed deeper: depth = height less deflection; turn the sign of the column",
-            ),
+            None => turned(),
         }
     }
 
@@ -389,7 +418,7 @@ impl<'a> Problem<'a> {
             held.solve_from(&there)
         };
         let best = at(found.at[2], found)?;
-        let beyond = |other: &Found| other.squares > best.squares + CHI * found.scatter;
+        let beyond = |other: &Found| other.squares > best.squares + CHI * best.scatter[0].powi(2);
         let end = |side: f64, limit: f64| -> Result<(Found, bool)> {
             let (mut inside, mut step) = (best.clone(), 0.1);
             let mut outside = loop {
@@ -459,16 +488,36 @@ impl<'a> Problem<'a> {
         let kept: Vec<usize> = (0..fitted.len())
             .filter(|k| weight(*k) > 0.0 && (fitted[*k] != 2 || inside && weight(*k) > 1.0))
             .collect();
-        let own: Vec<Vec<f64>> = kept.iter().map(|k| columns[*k].clone()).collect();
         let apart = self.signed(&residuals);
         let squares = dot(&residuals, &residuals);
-        let variance = squares / (apart.len() as f64 - own.len() as f64).max(1.0);
-        let durbin_watson = durbin_watson(&apart);
-        let alike = (1.0 - 0.5 * durbin_watson).clamp(0.0, CORRELATED);
-        let wider = variance * (1.0 + alike) / (1.0 - alike);
-        let covariance = covariance(&own, wider);
+        let [scatter, wide] = self.scatter(&apart, kept.len());
+        let of_contact = 2 * self.rows.contact.len();
+        let own = |k: &usize| {
+            let rows = columns[*k].iter().enumerate();
+            rows.map(|(row, x)| x / wide[usize::from(row >= of_contact)]).collect::<Vec<f64>>()
+        };
+        let covariance = covariance(&kept.iter().map(own).collect::<Vec<_>>(), 1.0);
         let kept = kept.into_iter().map(|k| fitted[k]).collect();
-        Ok(Found { at, covariance, kept, squares, scatter: wider, durbin_watson })
+        let durbin_watson = durbin_watson(&apart[..self.rows.contact.len()]);
+        Ok(Found { at, covariance, kept, squares, scatter, durbin_watson })
+    }
+
+    /// Standard deviations of a residual in contact and off it, and the same with what is not known about them: the model may bend away from the contact, and what varies slowly far from
+    /// the body says nothing about the few rows of a contact.
+    fn scatter(&self, apart: &[f64], parameters: usize) -> [[f64; 2]; 2] {
+        let of = |rows: &[f64], parameters: usize| {
+            let (n, alike) = (rows.len() as f64, correlation(rows));
+            let freedom = n - parameters as f64;
+            let scatter = (dot(rows, rows) / freedom.max(1.0) * alike).sqrt().max(LEAST);
+            [scatter, scatter * student(freedom / alike)]
+        };
+        let of_line = self.fitted().iter().filter(|k| **k >= 4).count().min(parameters);
+        let (contact, free) = apart.split_at(self.rows.contact.len());
+        let [contact, free] = match contact.len() < OWN || free.len() < OWN {
+            true => [of(apart, parameters); 2],
+            false => [of(contact, parameters - of_line), of(free, of_line)],
+        };
+        [[contact[0], free[0]], [contact[1], free[1]]]
     }
 
     /// One signed distance per row.
@@ -492,7 +541,7 @@ impl<'a> Problem<'a> {
                 there[*k] += step;
                 self.frame(&there)
             });
-            let bends = up.law != down.law;
+            let bends = up.law.differs(down.law);
             let [high, low] = match bends && feet.iter().any(|foot| foot.last) {
                 true => sides.map(|side| side.law.between([0.0; 2])[0]),
                 false => [0.0; 2],
@@ -510,17 +559,29 @@ impl<'a> Problem<'a> {
             };
             let rows = self.rows.contact.par_iter().with_min_len(256).zip(feet.par_iter()).map(row);
             let contact: Vec<[f64; 2]> = rows.collect();
-            let free = (down.shifts[1] - up.shifts[1]) / (2.0 * STEP * self.rows.noise[0]);
-            contact.into_iter().flatten().chain(self.rows.free.iter().map(|_| free)).collect()
+            let free = self
+                .rows
+                .free
+                .iter()
+                .map(|row| (up.off(*row) - down.off(*row)) / (2.0 * STEP * self.rows.free_noise));
+            contact.into_iter().flatten().chain(free).collect()
         };
         fitted.iter().map(column).collect()
     }
+}
+
+/// Half width of a 95 % interval of Student's t distribution over that of a normal one (R. A. Fisher & E. A. Cornish, Technometrics 2 (1960) 209): few
+/// independent rows know their own scatter badly.
+fn student(freedom: f64) -> f64 {
+    let x = 1.0 / freedom.max(LEAST_FREEDOM);
+    1.0 + x * (1.210 + x * (1.440 + x * 1.304))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{ForceRecord, PullOffControl};
     use super::*;
+    use crate::reference::MdrProfile;
 
     /// The gradient of the sum of squares follows from the slopes: compared with its differences, at a distance from the best fit, where
     /// some rows are nearest to the end of the branch.
@@ -540,11 +601,12 @@ mod tests {
         ] {
             let control = Some(PullOffControl::Displacement);
             let options = ForceOptions { model, range, control, ..Default::default() };
-            let mut rows = Rows::new(&ForceRecord { loads: &loads, depths: &depths }, &options).unwrap();
-            rows.noise = [2e-9, 2e-9];
             let profile = MdrProfile::Paraboloid { radius: 10e-6 };
-            let problem = Problem::new(profile, &rows, &options);
-            let at = vec![1.1e6f64.ln(), 4.7e-3f64.ln(), 0.7f64.ln(), 0.01, 0.003];
+            let record = ForceRecord { loads: &loads, depths: &depths };
+            let (mut rows, body) = Rows::new(profile, &record, &options).unwrap();
+            (rows.noise, rows.free_noise) = ([2e-9, 2e-9], 2e-9);
+            let problem = Problem::new(&body, &rows, &options);
+            let at = vec![1.1e6f64.ln(), 4.7e-3f64.ln(), 0.7f64.ln(), 0.01, 0.003, 0.004];
             let squares = |at: &[f64]| {
                 let residuals = problem.residuals(at, &problem.feet(at));
                 0.5 * dot(&residuals, &residuals)

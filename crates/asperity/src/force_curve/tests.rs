@@ -139,10 +139,10 @@ fn notes_name_what_may_be_wrong() {
     assert!(note(&far, "Tabor"), "{:?}", far.notes);
     let dmt = fit(ForceModel::Dmt, &curve(ForceModel::Dmt, 200, [2e-9, 1e-9], 3), ForceOptions::default());
     assert!(note(&dmt, "Tabor"), "{:?}", dmt.notes);
-    // A baseline that rises by 30 nN over the record, 20 nN of it where the sphere is free.
+    // A baseline that bends by 20 nN from its middle to its ends, over 1 um.
     let [loads, depths] = curve(ForceModel::Jkr, 300, [2e-9, 1e-9], 3);
-    let drifting: Vec<f64> = loads.iter().enumerate().map(|(k, w)| w + 1e-10 * k as f64).collect();
-    assert!(note(&fit(ForceModel::Jkr, &[drifting, depths], ForceOptions::default()), "drifts"));
+    let bent = loads.iter().zip(&depths).map(|(w, d)| w + 20e-9 * ((d + 0.3e-6) / 0.5e-6).powi(2)).collect();
+    assert!(note(&fit(ForceModel::Jkr, &[bent, depths], ForceOptions::default()), "bends"));
     let rough = fit(ForceModel::Jkr, &curve(ForceModel::Jkr, 200, [2e-9, 3e-8], 3), ForceOptions::default());
     assert!(note(&rough, "noise of the depth"), "{:?}", rough.notes);
     // Past the smallest load, before the sphere comes off.
@@ -246,4 +246,129 @@ fn elastic_indenters_of_other_shapes_give_the_modulus_back() {
     let [loads, depths] = &record;
     let error = fit_force_curve(cone, &ForceRecord { loads, depths }, &options).unwrap_err().to_string();
     assert!(error.contains("sphere") && error.contains("hertz"), "{error}");
+}
+
+/// The number of 40 records of these seeds whose intervals hold a number: fewer than 36 do in 1.4 of 100 such studies.
+fn held(of: impl Fn(u64) -> bool + Sync) -> usize {
+    (1..=40u64).into_par_iter().filter(|seed| of(*seed)).count()
+}
+
+/// 5 um of free way and 1 um of contact with 1600 Pa (E*: 2133 Pa), noise 5 pN, an offset of 1 nN.
+fn soft(n: usize, free: f64, tilt: f64, seed: u64) -> [Vec<f64>; 2] {
+    let sphere = MdrProfile::Paraboloid { radius: 5e-6 };
+    let mut random = Noise(seed);
+    let row = |k: usize| {
+        let depth = -free + (free + 1e-6) * k as f64 / (n - 1) as f64;
+        let load = SOFT * sphere.unit_load(depth.max(0.0)) + 1e-9 + tilt * depth;
+        [load + 5e-12 * random.normal(), depth + 0.3e-6 + 0.5e-9 * random.normal()]
+    };
+    let rows: Vec<[f64; 2]> = (0..n).map(row).collect();
+    [0, 1].map(|k| rows.iter().map(|row| row[k]).collect())
+}
+
+const SOFT: f64 = 1600.0 / 0.75;
+
+fn approach([loads, depths]: &[Vec<f64>; 2], options: ForceOptions) -> Result<ForceFit> {
+    let sphere = MdrProfile::Paraboloid { radius: 5e-6 };
+    fit_force_curve(
+        sphere,
+        &ForceRecord { loads, depths },
+        &ForceOptions { branch: Branch::Approach, ..options },
+    )
+}
+
+#[test]
+fn a_tilted_baseline_is_fitted_with_the_contact() {
+    for (n, free, tilt) in [
+        (600, 5e-6, 0.0),
+        (600, 5e-6, 50e-6),
+        (600, 5e-6, 200e-6),
+        (600, 5e-6, -200e-6),
+        (600, 0.5e-6, 200e-6),
+        // 100 rows of contact.
+        (10_000, 99e-6, 50e-6),
+    ] {
+        let held = held(|seed| {
+            let fit = approach(&soft(n, free, tilt, seed), ForceOptions::default()).unwrap();
+            assert!(fit.contact_modulus.determined, "{fit:?}");
+            fit.contact_modulus.holds(SOFT) && fit.tilt.holds(tilt) && fit.baseline.holds(1e-9)
+        });
+        println!("{n} {free:e} {tilt:e}: {held} of 40");
+        // All three at once: 0.95³ of 40 are 34, and fewer than 29 hold in 1 of 100 such studies.
+        assert!(held >= 29, "{n} {free} {tilt} {held}");
+    }
+    for tilt in [5e-3, -20e-3] {
+        let held = held(|seed| {
+            let [loads, depths] = curve(ForceModel::Jkr, 200, [2e-9, 1e-9], seed);
+            let loads = loads.iter().zip(&depths).map(|(w, d)| w + tilt * d).collect();
+            let fit = fit(ForceModel::Jkr, &[loads, depths], ForceOptions::default());
+            fit.contact_modulus.holds(MODULUS) && fit.work.holds(WORK)
+        });
+        // Both at once: 0.95² of 40 are 36, and fewer than 31 hold in 1 of 100 such studies.
+        assert!(held >= 31, "{tilt} {held}");
+    }
+}
+
+#[test]
+fn a_first_touch_outside_of_the_record_is_refused() {
+    // From 0.3 um deep on.
+    let [loads, depths] = soft(600, 5e-6, 0.0, 1).map(|column| column[530..].to_vec());
+    let error = approach(&[loads.clone(), depths.clone()], ForceOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("first touch"), "{error}");
+    // Its load of the free sphere subtracted, and from first touch on, it is fitted with a note.
+    let [loads, depths] = soft(600, 5e-6, 0.0, 1).map(|column| column[500..].to_vec());
+    let loads: Vec<f64> = loads.iter().map(|w| w - 1e-9).collect();
+    let fit = approach(&[loads, depths], ForceOptions::default()).unwrap();
+    assert!((fit.contact_modulus.value / SOFT - 1.0).abs() < 0.05, "{fit:?}");
+    assert!(fit.notes.iter().any(|note| note.contains("taken as 0")), "{:?}", fit.notes);
+}
+
+/// A pause of 200 rows at the largest depth, in which the body relaxes by a third: an elastic body has no such rows.
+#[test]
+fn a_pause_is_no_part_of_a_branch() {
+    let [up, into] = soft(600, 5e-6, 0.0, 1);
+    let [top, deepest] = [&up, &into].map(|column| column[599]);
+    let mut random = Noise(3);
+    let mut noisy = |value: f64, deviation: f64| value + deviation * random.normal();
+    let relaxed = |k: f64| 1e-9 + (top - 1e-9) * (1.0 + 2.0 * (-k / 60.0).exp()) / 3.0;
+    let pause: Vec<[f64; 2]> =
+        (0..200).map(|k| [noisy(relaxed(f64::from(k)), 5e-12), noisy(deepest, 0.5e-9)]).collect();
+    // Two thirds less stiff on the way back.
+    let back: Vec<[f64; 2]> =
+        up.iter().zip(&into).rev().map(|(w, d)| [1e-9 + (w - 1e-9) / 3.0, *d]).collect();
+    let rows: Vec<[f64; 2]> = up.iter().zip(&into).map(|(w, d)| [*w, *d]).chain(pause).chain(back).collect();
+    let whole = [0, 1].map(|k| rows.iter().map(|row| row[k]).collect::<Vec<f64>>());
+    let fit = approach(&whole, ForceOptions::default()).unwrap();
+    assert!((fit.contact_modulus.value / SOFT - 1.0).abs() < 0.02, "{:?}", fit.contact_modulus);
+    let [loads, depths] = &whole;
+    let sphere = MdrProfile::Paraboloid { radius: 5e-6 };
+    let fit = fit_force_curve(sphere, &ForceRecord { loads, depths }, &ForceOptions::default()).unwrap();
+    assert!((fit.contact_modulus.value / SOFT * 3.0 - 1.0).abs() < 0.05, "{:?}", fit.contact_modulus);
+    assert!(fit.notes.iter().any(|note| note.contains("pause")), "{:?}", fit.notes);
+}
+
+/// Plain least squares of the loads, whose answer is that of the normal equations at the fitted touch.
+#[test]
+fn without_weights_the_loads_are_fitted_by_least_squares() {
+    let record = soft(600, 5e-6, 50e-6, 5);
+    let fit = approach(&record, ForceOptions { weights: Weights::None, ..Default::default() }).unwrap();
+    let sphere = MdrProfile::Paraboloid { radius: 5e-6 };
+    let [loads, depths] = &record;
+    // The sum of squares does not fall along any of the numbers.
+    let squares = |modulus: f64, load: f64, tilt: f64| -> f64 {
+        let rows = loads.iter().zip(depths).map(|(w, d)| {
+            let into = d - fit.touch.value;
+            w - modulus * sphere.unit_load(into.max(0.0)) - load - tilt * into
+        });
+        rows.map(|x| x * x).sum()
+    };
+    let at = [fit.contact_modulus.value, fit.baseline.value, fit.tilt.value];
+    let least = squares(at[0], at[1], at[2]);
+    for k in 0..3 {
+        for by in [1e-3, -1e-3] {
+            let mut there = at;
+            there[k] *= 1.0 + by;
+            assert!(squares(there[0], there[1], there[2]) > least, "{k} {by}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Checks of the record and of the options.
 
-use super::{IndentationOptions, IndentationRecord};
+use super::{IndentationOptions, IndentationRecord, noise};
 use crate::error::{Error, Result, increasing, require};
 use crate::material::LongTime;
 
@@ -13,6 +13,8 @@ pub(super) const LARGEST: f64 = 1e30;
 pub(super) const MOST_TERMS: usize = 6;
 /// Loads below minus this fraction of the largest are not noise.
 const PULL: f64 = 0.05;
+/// Standard deviations of the noise beyond which a load is not noise.
+const SEEN: f64 = 6.0;
 
 pub(super) fn options(options: &IndentationOptions) -> Result<()> {
     if options.terms.is_some_and(|terms| terms > MOST_TERMS) {
@@ -42,7 +44,8 @@ pub(super) fn options(options: &IndentationOptions) -> Result<()> {
     super::stated::check(options)
 }
 
-pub(super) fn record(record: &IndentationRecord) -> Result<()> {
+/// Checks the columns as they are.
+pub(super) fn columns(record: &IndentationRecord) -> Result<()> {
     let n = record.times.len();
     for (name, column) in [("loads", record.loads), ("depths", record.depths)] {
         require(
@@ -74,7 +77,11 @@ pub(super) fn record(record: &IndentationRecord) -> Result<()> {
         record.times.iter().copied(),
         |row| format!("time of row {}", row + 1),
         |time| format!("{time} s"),
-    )?;
+    )
+}
+
+/// Checks that the body is pressed; loads are those without a baseline, depths from first touch. The first `free` rows are those of a free indenter.
+pub(super) fn signs(record: &IndentationRecord, free: usize) -> Result<()> {
     let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
         require(
@@ -85,13 +92,15 @@ pub(super) fn record(record: &IndentationRecord) -> Result<()> {
         )?;
     }
     let most = largest(record.loads);
-    if let Some((row, load)) = record.loads.iter().enumerate().find(|(_, load)| **load < -PULL * most) {
+    let noise = noise::deviation(record.times, record.loads);
+    let least = (PULL * most).max(SEEN * noise);
+    if let Some((row, load)) = record.loads.iter().enumerate().skip(free).find(|(_, load)| **load < -least) {
         return Err(Error::invalid(
             format!("load of row {}", row + 1),
             format!("{load} N"),
             format!(
                 "above -{:.0} % of the largest ({most:e} N): adhesion is not part of the model",
-                100.0 * PULL
+                100.0 * least / most
             ),
         ));
     }

@@ -1,5 +1,6 @@
 //! The record of a test as it is fitted, and how a fit lies against all its rows.
 
+use super::free::Free;
 use super::least_squares::Solution;
 use super::model::Model;
 use super::parameters::Law;
@@ -15,6 +16,8 @@ pub(super) struct Test {
     pub(super) model: Model,
     /// Row of the record of each row of `model`.
     pub(super) rows: Vec<usize>,
+    /// What was taken off the record.
+    pub(super) free: Free,
 }
 
 /// A fit beside all rows of the record.
@@ -35,12 +38,25 @@ impl Test {
         options: &IndentationOptions,
     ) -> Result<Self> {
         check::options(options)?;
-        check::record(record)?;
-        let [times, loads, depths] = [record.times, record.loads, record.depths].map(<[f64]>::to_vec);
+        check::columns(record)?;
+        let free = Free::of(profile, record, options.fit_touch);
+        let [loads, depths] = free.taken_off(record);
+        let taken = IndentationRecord { times: record.times, loads: &loads, depths: &depths };
+        check::signs(&taken, free.rows)?;
+        let times = record.times.to_vec();
         let given = options.given.unwrap_or_else(|| control::controlled(&times, &loads, &depths));
+        let loads = if given == Given::Load { free.unloaded(loads) } else { loads };
         let whole = Model::new(profile, times, loads, depths, given, options)?;
         let (model, rows) = whole.averaged();
-        Ok(Test { given, whole, model, rows })
+        Ok(Test { given, whole, model, rows, free })
+    }
+
+    /// What the record shows where the model has this value.
+    fn put_back(&self, value: f64, row: usize) -> f64 {
+        match self.given {
+            Given::Depth => value + self.free.load(self.whole.depths[row]),
+            Given::Load => value + self.free.shift,
+        }
     }
 
     /// The same without a comparison at the first row.
@@ -69,7 +85,7 @@ impl Test {
             ),
         )?;
         Ok(Judged {
-            predicted: self.rows.iter().map(|row| prediction.values[*row]).collect(),
+            predicted: self.rows.iter().map(|row| self.put_back(prediction.values[*row], *row)).collect(),
             durbin_watson: durbin_watson(&residuals),
             residuals,
             rms,

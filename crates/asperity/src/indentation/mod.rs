@@ -25,9 +25,11 @@
 //! radius, the thickness and the scales of load and deflection are added in squares.
 
 mod average;
+mod baseline;
 mod blocks;
 mod check;
 mod control;
+mod free;
 mod indenter;
 mod judged;
 mod least_squares;
@@ -51,9 +53,10 @@ use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
 
+pub(crate) use baseline::{Baseline, Line, Start, start};
 pub(crate) use least_squares::{covariance, damped_step};
 pub(crate) use notes::{ALIKE, of_indenter, unlikely_radius};
-pub(crate) use spectrum::durbin_watson;
+pub(crate) use spectrum::{correlation, durbin_watson};
 #[cfg(test)]
 pub(crate) use tests::Noise as TestNoise;
 
@@ -208,6 +211,10 @@ pub struct IndentationFit {
     pub terms: Vec<[Interval; 2]>,
     /// Depth of first touch \[m\]; 0 if it was not fitted.
     pub touch: Interval,
+    /// Load of the free indenter at first touch \[N\], and its slope over the depth \[N/m\]: from the rows before first touch; 0 where there are none.
+    pub baseline: Interval,
+    /// See `baseline`.
+    pub tilt: Interval,
     /// The channel that was taken as given.
     pub given: Given,
     /// Model of the other channel at each of `rows` \[N or m\]. If the load is given and less than 2 % of the largest, it
@@ -238,7 +245,8 @@ pub struct IndentationFit {
 /// # Errors
 /// [`Error::Invalid`] for a record that [`fit_indentation`] refuses.
 pub fn controlled(record: &IndentationRecord) -> Result<Given> {
-    check::record(record)?;
+    check::columns(record)?;
+    check::signs(record, 0)?;
     Ok(control::controlled(record.times, record.loads, record.depths))
 }
 
@@ -295,7 +303,7 @@ pub fn fit_indentation(
             (best, judged, average) = (other, beside, again);
         }
     }
-    let stated = Stated::new(model, &best, options)?;
+    let stated = Stated::new(model, &best, options, &test.free)?;
 
     let relaxation = best.relaxation();
     let instantaneous = average.interval(relaxation.instantaneous(), |draw| Some(draw.instantaneous()));
@@ -322,13 +330,17 @@ pub fn fit_indentation(
         false => Interval::exact(0.0),
     };
     let [value, low, high] = [touch.value, touch.low, touch.high].map(|x| model.depth_scale() * x);
-    let touch = Interval { value, low, high, determined: true };
+    let touch =
+        stated.widen_both_ways(Interval { value, low, high, determined: true }, |fitted| fitted.touch);
+    let [touch, baseline, tilt] = test.free.intervals(touch);
     let mut fit = IndentationFit {
         terms,
         relaxation,
         equilibrium,
         instantaneous,
-        touch: stated.widen_both_ways(touch, |fitted| fitted.touch),
+        touch,
+        baseline,
+        tilt,
         given: test.given,
         predicted: judged.predicted,
         rms: judged.rms,
@@ -340,6 +352,7 @@ pub fn fit_indentation(
         rows: test.rows.clone(),
     };
     fit.notes = notes::notes(&fit, options);
+    fit.notes.extend(notes::of_start(&test.whole.loads));
     let exponent = if best.parameters.terms > 0 { power_law::better(model, &best) } else { None };
     fit.notes.extend(exponent.map(|exponent| notes::of_better(&fit, exponent)));
     let layered = options.layer.is_some();

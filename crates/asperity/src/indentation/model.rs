@@ -26,8 +26,9 @@ const SUBSTEPS: usize = 2;
 /// Largest depth of a sphere over its radius: noise may pass the radius, and deeper the sphere is below the surface.
 const DEEPEST: f64 = 1.1;
 
-/// If the load is given, loads below this fraction of the largest count as no load.
+/// If the load is given, loads below this fraction of the largest, or this number of standard deviations of the noise, count as no load.
 const LOADED: f64 = 0.02;
+const NOISE: f64 = 6.0;
 
 /// Smallest assumed noise of the fitted channel, over its largest value: the error of the model and of the digits.
 const LEAST_NOISE: f64 = 1e-4;
@@ -120,7 +121,8 @@ impl Model {
             Given::Load => largest(&depths),
         };
         // Without load the depth contains no information: the indenter may be anywhere above the surface.
-        let least = LOADED * largest(&loads);
+        let small = noise::smallest(&noise::variances(&times, &loads)).sqrt();
+        let least = (LOADED * largest(&loads)).max(NOISE * small);
         let compared = loads.iter().map(|load| given == Given::Depth || *load > least).collect();
         let (fitted, taken) = match given {
             Given::Depth => (&loads, &depths),

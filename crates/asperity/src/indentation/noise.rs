@@ -62,6 +62,17 @@ fn third_difference(t: &[f64], y: &[f64]) -> f64 {
     if difference.is_finite() { difference } else { 0.0 }
 }
 
+/// Standard deviation of the noise, over all rows.
+pub(crate) fn deviation(times: &[f64], values: &[f64]) -> f64 {
+    let variances = variances(times, values);
+    (variances.iter().sum::<f64>() / variances.len() as f64).sqrt()
+}
+
+/// The variance of the rows with the least noise.
+pub(super) fn smallest(variances: &[f64]) -> f64 {
+    variances.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
 /// Root of the mean variance over the largest value.
 pub(super) fn relative(variances: &[f64], values: &[f64]) -> f64 {
     let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));

@@ -18,6 +18,9 @@ const SAME: f64 = 1e-3;
 /// Radius of the contact over that of the ball beyond which strains are not small.
 const WIDE: f64 = 0.4;
 
+/// Share of the largest load in the first row that is told.
+const PRESSED: f64 = 0.2;
+
 const EQUILIBRIUM: &str = "the equilibrium modulus";
 
 /// Implausible radii [m]: a unit is missing.
@@ -87,6 +90,18 @@ pub(super) fn of_better(fit: &IndentationFit, exponent: f64) -> String {
          length of the record; use the model `power-law`",
         if terms == 1 { "" } else { "s" }
     )
+}
+
+/// A record that begins under load: it may be the hold of a test whose ramp is missing.
+pub(super) fn of_start(loads: &[f64]) -> Option<String> {
+    let share = loads[0] / loads.iter().copied().fold(0.0, f64::max);
+    (share > PRESSED).then(|| {
+        format!(
+            "the record begins at {:.0} % of its largest load, which is taken as applied at once in its first row: if a ramp came before, its \
+             relaxation is missing and the moduli of short times come out too small; fit ramp and hold as one record",
+            100.0 * share
+        )
+    })
 }
 
 pub(super) fn of_power_law(fit: &PowerLawFit) -> Vec<String> {

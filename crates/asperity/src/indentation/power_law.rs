@@ -54,6 +54,10 @@ pub struct PowerLawFit {
     /// Depth of first touch \[m\]; 0 if it was not fitted.
     pub touch: Interval,
     /// See [`super::IndentationFit`].
+    pub baseline: Interval,
+    /// See [`super::IndentationFit`].
+    pub tilt: Interval,
+    /// See [`super::IndentationFit`].
     pub given: Given,
     /// See [`super::IndentationFit`].
     pub predicted: Vec<f64>,
@@ -150,7 +154,7 @@ pub fn fit_power_law(
     let model = &test.model;
     let best = best(model, options.springs)?;
     let judged = test.judge(&best, options.limit)?;
-    let stated = Stated::new(model, &best, options)?;
+    let stated = Stated::new(model, &best, options, &test.free)?;
     // Correlated residuals determine less; the rows and their means both count, as for the Prony series.
     let numbers = best.parameters.len();
     let scatter = deviation(&best.residuals, numbers).max(deviation(&judged.residuals, numbers));
@@ -176,10 +180,13 @@ pub fn fit_power_law(
         }
         false => Interval::exact(0.0),
     };
+    let [touch, baseline, tilt] = test.free.intervals(touch);
     let mut fit = PowerLawFit {
         modulus: stated.widen(modulus, |fitted| fitted.at[0].exp()),
         exponent,
         touch,
+        baseline,
+        tilt,
         given: test.given,
         predicted: judged.predicted,
         rms: judged.rms,
@@ -190,6 +197,7 @@ pub fn fit_power_law(
         rows: test.rows.clone(),
     };
     fit.notes = notes::of_power_law(&fit);
+    fit.notes.extend(notes::of_start(&test.whole.loads));
     fit.notes.extend(notes::of_indenter(
         profile,
         model.depth_scale(),

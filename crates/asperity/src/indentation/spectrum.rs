@@ -32,6 +32,8 @@ const SMALL: f64 = 1e-3;
 const NOTHING: f64 = 1e-4;
 /// Largest accepted correlation of neighbours in the noise.
 const MOST_ALIKE: f64 = 0.95;
+/// Largest number of rows that count as one.
+const MOST_CORRELATED: f64 = 100.0;
 
 /// The log-likelihood of any relaxation function.
 pub(super) struct Spectrum {
@@ -157,6 +159,21 @@ pub(crate) fn durbin_watson(residuals: &[f64]) -> f64 {
     let squares = dot(residuals, residuals);
     let jumps: f64 = residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
     if squares > 0.0 { jumps / squares } else { 2.0 }
+}
+
+/// Variance of a mean of residuals over that of independent ones, 1 + 2 Σ ρ_k: the correlations ρ_k of rows k apart, up to the first that is not
+/// greater than 0 (C. J. Geyer, Stat. Sci. 7 (1992) 473). It also finds what varies slowly.
+pub(crate) fn correlation(residuals: &[f64]) -> f64 {
+    let squares = dot(residuals, residuals);
+    let mut sum = 1.0;
+    for apart in 1..=residuals.len() / 4 {
+        let alike = dot(&residuals[apart..], &residuals[..residuals.len() - apart]);
+        if alike.is_nan() || alike <= 0.0 || sum > MOST_CORRELATED {
+            break;
+        }
+        sum += 2.0 * alike / squares;
+    }
+    sum.min(MOST_CORRELATED)
 }
 
 /// Coordinates with the same scalar products, by a pivoted Cholesky factorisation of the Gram matrix; all columns but the

@@ -4,8 +4,11 @@
 //! variance of ln E = Σ (u d ln E/d ln x)²        x: radius or slope, thickness, scale of the load, scale of the deflection
 //! ```
 //!
+//! The load of the free indenter, which is taken off the record, is such a quantity too, with the uncertainty that its rows give it.
+//!
 //! On a half-space d ln E/d ln R is -1/2 for a sphere and 1 for the slope of a cone; a layer has no such rule.
 
+use super::free::Free;
 use super::least_squares::{Solution, solve};
 use super::model::Model;
 use super::parameters::Law;
@@ -80,6 +83,7 @@ impl Stated {
         model: &Model,
         best: &Solution<L>,
         options: &IndentationOptions,
+        free: &Free,
     ) -> Result<Stated> {
         let profile = model.profile();
         let fit = |profile: MdrProfile, options: &IndentationOptions, columns: [Vec<f64>; 2]| {
@@ -105,7 +109,20 @@ impl Stated {
             let moved = depths.iter().zip(&loads).map(|(d, load)| d - (times - 1.0) * load / stiffness);
             fit(profile, options, [loads.iter().map(|load| times * load).collect(), moved.collect()])
         };
-        let sources: [(f64, Refit); 4] = [
+        // One standard deviation of the baseline for a change of 1 %.
+        let of_baseline = |part: usize, times: f64| {
+            let [loads, depths] = columns();
+            let moved = loads.iter().zip(&depths).map(|(load, depth)| match *load == 0.0 {
+                true => 0.0,
+                false => load + (times - 1.0) / CHANGE * free.change(part, *depth),
+            });
+            fit(profile, options, [moved.collect(), depths.clone()])
+        };
+        let [of_offset, of_tilt] = [0, 1].map(|part| move |times: f64| of_baseline(part, times));
+        let share = |part: usize| if free.deviations[part] > 0.0 { CHANGE } else { 0.0 };
+        let sources: [(f64, Refit); 6] = [
+            (share(0), &of_offset),
+            (share(1), &of_tilt),
             (options.radius_uncertainty, &of_radius),
             (options.thickness_uncertainty, &of_thickness),
             (options.load_uncertainty, &of_load),

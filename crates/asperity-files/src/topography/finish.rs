@@ -96,7 +96,12 @@ pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) 
                 Unit::Other(label) => format!("{channel} (it says {label:?})"),
                 _ => String::new(),
             };
-            return Err(Problem::MissingHeightUnit { format, detail });
+            return Err(match (options.size, lateral) {
+                (None, Lateral::Unstated(size)) => {
+                    Problem::MissingSizeAndHeightUnit { format, size, unit: detail }
+                }
+                _ => Problem::MissingHeightUnit { format, detail },
+            });
         }
     };
     let mut told = None;

@@ -83,7 +83,11 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile> {
         Unit::Unstated => (None, String::new()),
         Unit::Other(label) => (None, format!(" (it says {label:?})")),
     };
-    let missing = || Problem::MissingHeightUnit { format: Format::Text, detail };
+    let is_bare = columns.positions.is_none() && options.size.is_none() && detail.is_empty();
+    let missing = || match is_bare {
+        true => Problem::MissingLengthAndHeightUnit(count),
+        false => Problem::MissingHeightUnit { format: Format::Text, detail },
+    };
     let height_unit = options.height_unit.or(stated).ok_or_else(missing)?;
     if columns.positions.is_none() && options.size.is_none() {
         return Err(Problem::MissingLength(count));
@@ -247,7 +251,8 @@ mod tests {
         }
         // With a comma this is two columns of integers, or one of decimals: no heights are read with the unit of the one.
         assert!(message("z [nm]\n1,0\n2,0\n0,5\n", &long).contains("--height-unit"));
-        assert!(message("1\n2\n", &ReadOptions::default()).contains("--height-unit"));
+        let both = message("1\n2\n", &ReadOptions::default());
+        assert!(both.contains("--size '4 mm' --height-unit um"), "{both}");
         assert!(message("z [nm]\n1\n2\n", &ReadOptions::default()).contains("--size '4 mm'"));
     }
 

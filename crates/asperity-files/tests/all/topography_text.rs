@@ -152,6 +152,9 @@ fn a_file_of_several_images_has_channels() {
 fn what_the_file_does_not_say_is_asked_for() {
     let text = "1 2 3 4\n5 6 7 8\n";
     let error = read(text).unwrap_err();
+    assert!(matches!(error.problem, Problem::MissingSizeAndHeightUnit { .. }), "{error}");
+    assert!(error.to_string().contains("--size '100 um, 100 um' --height-unit nm"), "{error}");
+    let error = with(text, Some([1.0, 1.0]), None).unwrap_err();
     assert!(matches!(error.problem, Problem::MissingHeightUnit { .. }), "{error}");
     let error = with(text, None, Some(NM)).unwrap_err();
     assert!(matches!(error.problem, Problem::MissingSize { .. }), "{error}");

@@ -244,6 +244,7 @@ def fit_file(
     columns: dict[str, str | int],
     units: dict[str, str],
     sheet: str | None,
+    segment: int | None,
     options: dict[str, Any],
 ) -> dict[str, Any]: ...
 def fit_force_curve(

@@ -299,7 +299,7 @@ fn text_below(lines: &[&str], n: usize, dialect: Dialect, columns: usize) -> Res
     let numbers = |line: &str| cells(line, dialect.separator).iter().filter(|cell| number(cell)).count();
     let is_whole = |line: &str| {
         let cells = cells(line, dialect.separator);
-        cells.len() >= 2 && cells.iter().all(|cell| number(&cell) || is_missing(cell))
+        cells.len() >= 2 && cells.iter().all(|cell| number(cell) || is_missing(cell))
     };
     let whole = || lines.iter().filter(|line| !is_comment(line) && is_whole(line) && numbers(line) >= 2);
     let shown: String = lines[0].chars().take(60).collect();

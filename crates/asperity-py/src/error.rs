@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::Error;
 use asperity_io::case::CaseErrors;
-use asperity_io::curve::{CurveError, Remedy};
+use asperity_io::curve::{CurveError, Words};
 use asperity_io::leakage::LeakError;
 use asperity_io::session::RunError;
 use asperity_io::store::StoreError;
@@ -149,7 +149,7 @@ fn of_topography(error: TopographyError) -> Failure {
 /// A fault of a file of measured curves: of what it holds, or of reading it.
 fn of_curve(error: CurveError) -> Failure {
     match error.path.is_file() {
-        true => Failure::case(error.told(Remedy::in_python)),
+        true => Failure::case(error.told(Words::Python)),
         false => Failure::of_path(&error.path, &error),
     }
 }

@@ -8,7 +8,7 @@ use asperity::material::{FitOptions, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{
     Column, Columns, CurveError, Curves, Fitted, Request, Role, Series, ShiftRequest, Sweep, VerticalRequest,
-    VerticalWord,
+    VerticalWord, Words,
 };
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -105,8 +105,7 @@ pub fn fit<'py>(
 /// A fault of the caller's arrays: the number is that of a point, not a line.
 fn located(error: CurveError) -> Failure {
     let point = error.line.map(|n| format!("point {n}: ")).unwrap_or_default();
-    let remedy = error.remedy.as_ref().map(|remedy| format!("; {}", remedy.in_python())).unwrap_or_default();
-    Failure::case(format!("{point}{}{remedy}", error.message))
+    Failure::case(format!("{point}{}{}", error.message, error.remedies(Words::Python)))
 }
 
 /// Where a column is.
@@ -125,6 +124,7 @@ pub fn fit_file<'py>(
     columns: BTreeMap<String, Place>,
     units: BTreeMap<String, String>,
     sheet: Option<String>,
+    segment: Option<usize>,
     options: Options<'_>,
 ) -> Answer<Dict<'py>> {
     let role = |name: String| Role::from_str(&name);
@@ -134,6 +134,7 @@ pub fn fit_file<'py>(
     };
     let said = Columns {
         sheet,
+        segment,
         columns: columns
             .into_iter()
             .map(|(name, place)| Ok((role(name)?, column(place))))

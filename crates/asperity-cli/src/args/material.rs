@@ -69,6 +69,9 @@ pub struct Data {
     /// Sheet of a spreadsheet (.xls, .xlsx) [default: the first one that names such columns]
     #[arg(long, value_name = "NAME")]
     pub sheet: Option<String>,
+    /// Which of several steps or sweeps below each other to read, from 1 [default: all, as one]
+    #[arg(long, value_name = "N")]
+    pub segment: Option<usize>,
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,13 +4,14 @@ use std::collections::BTreeMap;
 
 use asperity::material::Modulus;
 
-use super::Kind;
-use super::alternatives;
+use super::{alternatives, kind};
+
 use super::error::{Remedy, Result, fault};
 use super::role::{self, Role, unnumbered};
 use super::sweeps::{DYNAMIC, Pair};
 use super::table::{Heading, Table};
 use super::units::{convert, is_angular, spelled, taken, tidy};
+use super::{Kind, Whole};
 use crate::quantity::unit::Unit;
 use crate::quantity::{Dimension, dimension};
 
@@ -72,6 +73,8 @@ pub struct Columns {
     pub units: BTreeMap<Role, String>,
     /// The sheet of a spreadsheet, by its name; the first with a curve if the caller names none.
     pub sheet: Option<String>,
+    /// The step or sweep that is read of a table that holds several below each other, from 1; all of them if the caller names none.
+    pub segment: Option<usize>,
 }
 
 /// The numbers of a role in SI, per row.
@@ -96,6 +99,8 @@ pub struct Place {
 pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
+    notes.extend(table.notes.iter().cloned());
+    notes.extend(in_order(table, form, &places, said));
     notes.extend(alternatives::agree(table, form, &places, said)?);
     let unread = table.unread.as_deref().filter(|_| table.is_named()).map(shown);
     notes.extend(unread.as_ref().map(|line| {
@@ -105,6 +110,9 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
     for (role, column) in places {
         let heading = &table.headings[column];
         let Heading { header, name, base, .. } = heading;
+        if role == Role::Modulus && kind::is_creep_modulus(name) {
+            return Err(kind::creep_modulus(table, column));
+        }
         let unit = unit_of(heading, role, said);
         let place = format!("column {}{}", column + 1, table.quoted(column));
         if let (true, Some(line), false) =
@@ -145,7 +153,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
                 true => format!("; the columns are {}", table.listed()),
                 false => String::new(),
             };
-            fault(format!("{} ({place}): {why}{columns}", role.name())).remedy(remedy).at(line)
+            let whole = if is_open { whole(table, form, said) } else { None };
+            fault(format!("{} ({place}): {why}{columns}", role.name())).remedy(remedy).whole(whole).at(line)
         })?;
         let own = &heading.unit;
         if let Some(given) = said.units.get(&role)
@@ -185,6 +194,23 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read> 
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// A note where the columns have names, but none that is known.
+fn in_order(table: &Table, form: Form, places: &BTreeMap<Role, usize>, said: &Columns) -> Option<String> {
+    let known = |(role, column): (&Role, &usize)| means(table, *column, *role, form);
+    if !table.is_named() || !said.columns.is_empty() || places.iter().any(known) {
+        return None;
+    }
+    let place = |(role, column): (&Role, &usize)| {
+        format!("{}{} is {}", column + 1, table.quoted(*column), role.name())
+    };
+    let places: Vec<String> = places.iter().map(place).collect();
+    Some(format!(
+        "no name of a column is known: they are taken in the order of a {} file, {}",
+        form.name,
+        places.join("; ")
+    ))
 }
 
 /// The unit of a column: as the caller says, or else as its heading does; empty if neither does.
@@ -328,7 +354,8 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
                 role::listed(order),
                 table.listed()
             ))
-            .remedy(Remedy::Column(form.needed[0])));
+            .remedy(Remedy::Column(form.needed[0]))
+            .whole(whole(table, form, said)));
         }
         for (n, role) in order.enumerate() {
             if n < table.headings.len() && !places.values().any(|place| *place == n) {
@@ -350,9 +377,16 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
         Some(role) => {
             let columns = table.listed();
             let message = format!("no column is recognised as {}; the file has {columns}", role.name());
-            Err(fault(message).remedy(Remedy::Column(role)))
+            Err(fault(message).remedy(Remedy::Column(role)).whole(whole(table, form, said)))
         }
     }
+}
+
+/// All that a file of a kind of its own leaves open.
+fn whole(table: &Table, form: Form, said: &Columns) -> Option<Whole> {
+    let kind =
+        [Kind::Relaxation, Kind::Creep, Kind::Dma].into_iter().find(|kind| kind.name() == form.name)?;
+    Whole::of(table, kind, said, false)
 }
 
 /// # Errors
@@ -512,7 +546,7 @@ fn names(table: &Table, role: Role, form: Form) -> bool {
     (0..table.headings.len()).any(|column| means(table, column, role, form))
 }
 
-fn find(table: &Table, role: Role, column: &Column) -> Result<usize> {
+pub(super) fn find(table: &Table, role: Role, column: &Column) -> Result<usize> {
     let wrong = |what: String| {
         let message = format!("{} must be {what}, but the columns are {}", role.name(), table.listed());
         fault(message).remedy(Remedy::Column(role))

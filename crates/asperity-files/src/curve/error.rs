@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::Role;
+use super::{Role, Whole};
 
 /// A file of measured curves that cannot be used, with the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,6 +15,8 @@ pub struct CurveError {
     pub message: String,
     /// What to do.
     pub remedy: Option<Remedy>,
+    /// Where more than that is open: all of it.
+    pub whole: Option<Box<Whole>>,
 }
 
 /// What to do about a file; its text is in the words of a case file, of the command or of Python.
@@ -44,6 +46,8 @@ pub enum Remedy {
     Loss,
     /// Say which of the sheets, named here, to read.
     Sheet(String),
+    /// Say which of so many segments to read, or give their temperatures.
+    Segment(usize),
 }
 
 impl Remedy {
@@ -138,27 +142,41 @@ impl Remedy {
                 "say moduli=\"storage\" (or \"loss\")",
             ]
             .map(str::to_owned),
+            Remedy::Segment(count) => [
+                ("segment = N", "columns = { temperature = N }"),
+                ("--segment N", "--column temperature=N"),
+                ("segment=N", "columns={\"temperature\": N}"),
+            ]
+            .map(|(one, all)| {
+                format!(
+                    "say which one to read, {one} (1 to {count}); if they are the same step at several temperatures, add a column of temperatures \
+                     ({all})"
+                )
+            }),
             Remedy::Sheet(sheets) => ["sheet = \"...\"", "--sheet NAME", "sheet=\"...\""]
                 .map(|key| format!("say which with {key}: {sheets}")),
         }
     }
+}
 
-    /// As keys of a material in a case file.
-    pub fn in_case(&self) -> String {
-        let [case, ..] = self.words();
-        case
-    }
+/// In whose words a remedy is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Words {
+    /// Keys of a material in a case file.
+    Case,
+    /// Options of `asperity material fit` and `show`.
+    Command,
+    /// Arguments of Python's `fit_file`.
+    Python,
+}
 
-    /// As options of `asperity material fit` and `show`.
-    pub fn in_command(&self) -> String {
-        let [_, command, _] = self.words();
-        command
-    }
-
-    /// As arguments of Python's `fit_file`.
-    pub fn in_python(&self) -> String {
-        let [.., python] = self.words();
-        python
+impl Words {
+    fn choose(self, [case, command, python]: [String; 3]) -> String {
+        match self {
+            Words::Case => case,
+            Words::Command => command,
+            Words::Python => python,
+        }
     }
 }
 
@@ -167,15 +185,22 @@ pub(super) type Result<T, E = CurveError> = std::result::Result<T, E>;
 
 /// A fault before its file is known.
 pub(super) fn fault(message: impl Into<String>) -> CurveError {
-    CurveError { path: PathBuf::new(), line: None, message: message.into(), remedy: None }
+    CurveError { path: PathBuf::new(), line: None, message: message.into(), remedy: None, whole: None }
 }
 
 impl CurveError {
-    /// The whole message, with the remedy in the given words.
-    pub fn told(&self, words: impl Fn(&Remedy) -> String) -> String {
+    /// The whole message, with the remedy in these words.
+    pub fn told(&self, words: Words) -> String {
         let line = self.line.map(|line| format!(", line {line}")).unwrap_or_default();
-        let remedy = self.remedy.as_ref().map(|remedy| format!("; {}", words(remedy))).unwrap_or_default();
-        format!("{}{line}: {}{remedy}", self.path.display(), self.message)
+        format!("{}{line}: {}{}", self.path.display(), self.message, self.remedies(words))
+    }
+
+    /// `; what to do` in these words, or nothing.
+    pub fn remedies(&self, words: Words) -> String {
+        let remedy = self.remedy.as_ref().map(Remedy::words);
+        let whole = self.whole.as_ref().map(|whole| whole.words());
+        let told = [remedy, whole].into_iter().flatten().map(|text| format!("; {}", words.choose(text)));
+        told.collect()
     }
 
     pub(super) fn at(self, line: impl Into<Option<usize>>) -> CurveError {
@@ -186,14 +211,21 @@ impl CurveError {
         CurveError { remedy: Some(remedy), ..self }
     }
 
-    pub(super) fn of(self, path: &Path) -> CurveError {
+    pub(super) fn whole(self, whole: Option<Whole>) -> CurveError {
+        CurveError { whole: whole.map(Box::new), ..self }
+    }
+
+    pub(super) fn of(mut self, path: &Path) -> CurveError {
+        if let Some(whole) = self.whole.as_mut() {
+            whole.path = path.to_owned();
+        }
         CurveError { path: path.to_owned(), ..self }
     }
 }
 
 impl std::fmt::Display for CurveError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.told(Remedy::in_case))
+        f.write_str(&self.told(Words::Case))
     }
 }
 

@@ -68,9 +68,17 @@ impl Indentation {
             let first = read.next().unwrap_or_else(|| Err(fault("the file holds no table")));
             first.or_else(|fault| read.find_map(Result::ok).ok_or(fault))
         });
-        let columns::Read { values, notes, .. } = parsed.map_err(|fault| fault.of(path))?;
+        let columns::Read { values, lines, notes, .. } = parsed.map_err(|fault| fault.of(path))?;
         let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
         let [times, loads, depths] = [Role::Time, Role::Load, Role::Depth].map(of);
+        if let Some(n) = times.windows(2).position(|pair| pair[1] < pair[0]) {
+            let (before, here) = (times[n], times[n + 1]);
+            return Err(fault(format!(
+                "the time goes back from {before:e} s to {here:e} s: a record needs times that go on through all its segments, in one column"
+            ))
+            .at(lines[n + 1])
+            .of(path));
+        }
         Ok(Indentation { path: path.to_owned(), times, loads, depths, notes })
     }
 }

@@ -30,7 +30,12 @@ pub(super) fn of(table: &Table, sheet: Option<&str>) -> Result<Option<Kind>> {
     let (relaxation, creep) = (named(Kind::Relaxation), named(Kind::Creep));
     let (called, answered) = (called(table, sheet), answered(table));
     match (relaxation, creep) {
-        (false, false) => Ok(None),
+        (false, false) => {
+            match (0..table.headings.len()).find(|column| is_creep_modulus(&table.headings[*column].name)) {
+                Some(column) => Err(creep_modulus(table, column)),
+                None => Ok(None),
+            }
+        }
         (true, true) => match (called, answered) {
             (Some(kind), None) => Ok(Some(kind)),
             (Some(kind), Some((by, _))) if kind == by => Ok(Some(kind)),
@@ -51,6 +56,30 @@ pub(super) fn of(table: &Table, sheet: Option<&str>) -> Result<Option<Kind>> {
                 _ => Ok(Some(kind)),
             }
         }
+    }
+}
+
+/// Whether a column is named as a creep modulus, the stress over a strain that grows.
+pub(super) fn is_creep_modulus(name: &str) -> bool {
+    let name = role::bare(name);
+    ["creepmodul", "kriechmodul", "moduledefluage"].iter().any(|start| name.starts_with(start))
+}
+
+/// The error for a creep modulus, which is no relaxation modulus.
+pub(super) fn creep_modulus(table: &Table, column: usize) -> super::error::CurveError {
+    fault(format!(
+        "column {}{} holds a creep modulus, stress over the strain that grows: it is no relaxation modulus, but its reciprocal is the creep \
+         compliance; write that to a column, as in \"creep compliance [1/MPa]\"",
+        column + 1,
+        table.quoted(column)
+    ))
+}
+
+/// What a table most likely holds whose header does not say it: a table of two columns or of times no DMA.
+pub(super) fn likely(table: &Table) -> Kind {
+    match table.headings.len() <= 2 || named_column(table, Role::Time, Kind::Relaxation).is_some() {
+        true => Kind::Relaxation,
+        false => Kind::Dma,
     }
 }
 

@@ -24,6 +24,7 @@
 //! ```
 
 mod alternatives;
+mod below;
 mod block;
 mod clean;
 mod columns;
@@ -37,11 +38,13 @@ mod isotherms;
 mod kind;
 mod names;
 mod role;
+mod segments;
 mod sweeps;
 mod table;
 mod thin;
 mod units;
 mod vertical;
+mod whole;
 mod wide;
 mod workbook;
 
@@ -51,7 +54,7 @@ pub use crate::topography::{
     Calibration, InstrumentCurve, Place as GridPlace, holds_curves, read_curve_file, read_curves,
 };
 pub use columns::{Column, Columns, Place};
-pub use error::{CurveError, Remedy};
+pub use error::{CurveError, Remedy, Words};
 pub use factors::{HeldShift, read_shift_table};
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use force::{Cantilever, ForceTable};
@@ -60,12 +63,14 @@ pub use role::Role;
 pub use thin::thinned;
 pub use units::angular_frequency;
 pub use vertical::{VerticalRequest, VerticalWord};
+pub use whole::Whole;
 
 use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
 use error::fault;
+use segments::Segments;
 use table::Table;
 use workbook::{Sheet, listed};
 
@@ -191,7 +196,8 @@ impl Curves {
                     "storage and loss modulus need a column of frequencies; the file has {}",
                     table.listed()
                 ))
-                .remedy(Remedy::Column(Role::Frequency)),
+                .remedy(Remedy::Column(Role::Frequency))
+                .whole(Whole::of(table, Kind::Dma, &Columns::default(), false)),
                 (None, Some(table), _) if factors::told_by(table) => {
                     fault("the file holds shift factors and no measured curve; it is the shift table of one (--shift-table)")
                 }
@@ -201,7 +207,8 @@ impl Curves {
                      compliance over time, a DMA storage and loss modulus over frequency; the file has {}",
                     table.map_or_else(|| "no table".to_owned(), Table::listed)
                 ))
-                .remedy(Remedy::Kind),
+                .remedy(Remedy::Kind)
+                .whole(table.and_then(|table| Whole::of(table, kind::likely(table), &Columns::default(), true))),
             })
         };
         kind().map_err(|fault| fault.of(path))
@@ -229,6 +236,15 @@ impl Curves {
             let headers = (1..).zip(&table.headings).filter(|(n, _)| !is_used(*n));
             let unused = headers.map(|(_, heading)| heading.header.clone()).filter(|name| !name.is_empty());
             let unused = unused.collect();
+            let (values, lines) = match columns.segment {
+                Some(number) => {
+                    let (rows, note) = Segments::of(kind, &values).choose(number, kind, &values, &lines)?;
+                    notes.push(note);
+                    let values = segments::chosen(&values, &rows);
+                    (values, rows.iter().map(|row| lines[*row]).collect())
+                }
+                None => (values, lines),
+            };
             let (sweeps, repeated) = sweeps::sweeps(kind, &values, &lines)?;
             notes.extend(repeated);
             Ok(Curves {

@@ -123,7 +123,7 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     const REST: &str =
         "1 2 ' '' * t r rel relax stor storage loss creep complex prime doubleprime star modul modulus";
     let name = bare(name);
-    if name.contains("shear") || name.contains("schub") {
+    if ["shear", "schub", "cisaillement"].iter().any(|word| name.contains(word)) {
         return Some(Modulus::Shear);
     }
     if ["young", "tensile", "bending", "elastizität", "zugmodul"].iter().any(|word| name.contains(word)) {

@@ -7,7 +7,8 @@
 //! ```
 
 use super::columns::Values;
-use super::error::{Remedy, Result, fault};
+use super::error::{CurveError, Remedy, Result, fault};
+use super::segments::{Segments, by_set};
 use super::{Kind, Role, Sweep};
 
 /// Temperatures closer than this belong to one sweep \[K\]: no chamber holds a temperature better.
@@ -46,13 +47,17 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<(Ve
     };
     let all: Vec<usize> = (0..x.len()).collect();
     let sets = by_set(values);
+    let several = |error: CurveError| match Segments::of(kind, values) {
+        segments if segments.count() > 1 => segments.several(&error.message, lines).at(error.line),
+        _ => error,
+    };
     let Some(temperatures) = values.get(&Role::Temperature) else {
         if sets.len() > 1 {
-            let message =
-                format!("the file holds {} sweeps (column of sets), but no temperatures", sets.len());
-            return Err(fault(message).remedy(Remedy::Column(Role::Temperature)));
+            let why = "a column names several sets, and none holds their temperatures";
+            return Err(Segments::of(kind, values).several(why, lines));
         }
-        return once(kind, vec![sweep(None, &all)]);
+        forward(kind, values, &all, lines)?;
+        return once(kind, vec![sweep(None, &all)]).map_err(several);
     };
     let groups = match held(&sets, temperatures) {
         true if sets.len() > 1 => sets,
@@ -61,10 +66,34 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<(Ve
     if groups.len() > MOST_SWEEPS && !is_ramp(groups.iter().map(|rows| mean(temperatures, rows))) {
         return Err(fault(format!("there are more than {MOST_SWEEPS} temperatures")));
     }
+    groups.iter().try_for_each(|rows| forward(kind, values, rows, lines))?;
     let mut found: Vec<Sweep> =
         groups.iter().map(|rows| sweep(Some(mean(temperatures, rows)), rows)).collect();
     found.sort_by(|a, b| a.temperature.unwrap_or(0.0).total_cmp(&b.temperature.unwrap_or(0.0)));
-    once(kind, found)
+    once(kind, found).map_err(several)
+}
+
+/// # Errors
+/// Where the times of these rows of a relaxation or creep test begin again.
+fn forward(kind: Kind, values: &Values, rows: &[usize], lines: &[usize]) -> Result<()> {
+    let (false, Some(x)) = (kind == Kind::Dma, values.get(&Role::Time)) else { return Ok(()) };
+    let back = |pair: &&[usize]| x[pair[1]] < x[pair[0]];
+    let falls = rows.first().zip(rows.last()).is_some_and(|(first, last)| x[*last] < x[*first]);
+    let (Some(pair), false) =
+        (rows.windows(2).find(back), falls && rows.windows(2).all(|pair| x[pair[1]] <= x[pair[0]]))
+    else {
+        return Ok(());
+    };
+    let segments = Segments::of(kind, values);
+    if segments.count() < 2 {
+        return Ok(());
+    }
+    let [before, here] = [pair[0], pair[1]];
+    let why = format!(
+        "the time goes back from {:e} s on line {} to {:e} s here",
+        x[before], lines[before], x[here]
+    );
+    Err(segments.several(&why, lines).at(lines[here]))
 }
 
 /// Values at one abscissa of a sweep differ from their mean by no more: others belong to different sweeps.
@@ -92,10 +121,10 @@ fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>)> 
                 if group.len() > 1 && (apart.is_nan() || apart > SAME_VALUE) {
                     let [first, other] = [sweep.lines[rows.start], sweep.lines[rows.end - 1]];
                     return Err(fault(format!(
-                        "the {name} is that of line {first}, but the values differ by {:.0} %: points of different sweeps need a \
-                         column of temperatures",
+                        "the {name} is that of line {first}, but the values differ by {:.0} %, as those of different sweeps do, which need a column of temperatures",
                         100.0 * (values[values.len() - 1] / values[0] - 1.0).abs()
                     ))
+                    .remedy(Remedy::Column(Role::Temperature))
                     .at(other));
                 }
                 farthest = farthest.max(apart);
@@ -156,19 +185,6 @@ fn dynamic(values: &Values) -> Vec<Vec<f64>> {
     let points = of(first).iter().zip(of(second)).zip(of(&Role::Frequency));
     let (storage, loss) = points.map(|((a, b), omega)| moduli(*a, *b, *omega)).unzip();
     vec![storage, loss]
-}
-
-/// The rows of each set, in the order of the file.
-fn by_set(values: &Values) -> Vec<Vec<usize>> {
-    let Some(sets) = values.get(&Role::Set) else { return Vec::new() };
-    let count = sets.iter().copied().fold(-1.0, f64::max) as usize;
-    let mut rows = vec![Vec::new(); (count + 1).min(sets.len())];
-    for (row, set) in sets.iter().enumerate() {
-        if let Some(rows) = rows.get_mut(*set as usize) {
-            rows.push(row);
-        }
-    }
-    rows
 }
 
 /// Whether each set was measured at one temperature, and no two at the same.

@@ -8,6 +8,7 @@
 
 use std::ops::Range;
 
+use super::below::{self, Labels};
 use super::error::{CurveError, Result, fault};
 use super::heading::{self, Dialect};
 use super::names::{is_unit, split_unit, unquoted};
@@ -23,6 +24,8 @@ pub(super) struct Table {
     /// A line before the points that is not understood: in place of names, or below them. It may hold units.
     pub unread: Option<String>,
     pub rows: Vec<Row>,
+    /// Lines between the points or below them that are not read, although they hold numbers.
+    pub notes: Vec<String>,
     text: String,
     pub separator: Option<char>,
     pub decimal_comma: bool,
@@ -110,15 +113,18 @@ impl Table {
         let unread = if is_named { unread.map(|n| lines[n]) } else { last_above() }.map(str::to_owned);
         let lines_of_heading = usize::from(is_named) + usize::from(units.is_some());
         let named = heading(&lines[..first], separator, lines_of_heading);
+        let labels = Labels::of(&cells(lines[complete], separator), decimal_comma);
         let is_row = |line: &str| {
-            let width = cells(line, separator).len();
-            numbers(line) >= 2 && (width == columns || width == columns + 1)
+            let cells = cells(line, separator);
+            let fits = cells.len() == columns || cells.len() == columns + 1;
+            fits && numbers(line) >= 2 && !labels.label(&cells)
         };
         let last = lines.iter().rposition(|line| is_row(line)).unwrap_or(first);
-        let mut rows = Vec::new();
-        let mut skipped = first;
+        let (mut rows, mut notes) = (Vec::new(), Vec::new());
+        let (mut skipped, mut apart, mut blank) = (first, Vec::new(), false);
         for (n, line) in lines.iter().enumerate().skip(first) {
             if n < skipped || is_blank(line, separator) {
+                blank |= n >= skipped;
                 continue;
             }
             if is_comment(line) {
@@ -130,12 +136,18 @@ impl Table {
                 continue;
             }
             let mut cells = cells(line, separator);
-            if numbers(line) == 0 || cells.len() != columns {
-                // Text below the table: "Mean: 12".
-                let is_text = cells.first().is_none_or(|cell| !number(cell));
-                if n > last && is_text && cells.len() < columns {
-                    break;
-                }
+            // Text below the table: "Mean: 12".
+            let is_text = || cells.first().is_none_or(|cell| !number(cell)) && cells.len() < columns;
+            if n > last && (labels.label(&cells) || is_text()) {
+                notes.extend(text_below(&lines[n..], n, dialect, columns)?);
+                break;
+            }
+            if labels.sums_up(&cells) && numbers(line) > 0 {
+                let shown: String = line.chars().take(60).collect();
+                notes.push(format!("line {} ({shown:?}) sums up others and is not read", n + 1));
+                continue;
+            }
+            if numbers(line) == 0 || cells.len() != columns || labels.label(&cells) {
                 if let Some(next) = repeated_heading(&lines[..=last], n, &named, separator, &is_row) {
                     skipped = next;
                     continue;
@@ -161,13 +173,39 @@ impl Table {
             if rows.len() == MOST_ROWS {
                 return Err(fault(format!("there are more than {MOST_ROWS} points")).at(n + 1));
             }
+            if std::mem::take(&mut blank) && !rows.is_empty() {
+                apart.push(rows.len());
+            }
             // Both are slices of one text.
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
         let headings = headings(headers, units);
         drop(lines);
-        Ok(Table { headings, unread, rows, text, separator, decimal_comma })
+        let mut table = Table { headings, unread, rows, notes, text, separator, decimal_comma };
+        table.end(&apart)?;
+        Ok(table)
+    }
+
+    /// Takes out the rows at the end that sum up the others; `apart` are the rows that stand below a blank line.
+    fn end(&mut self, apart: &[usize]) -> Result<()> {
+        let mut rows = std::mem::take(&mut self.rows);
+        let first = |row: &Row| match self.cell(row, 0) {
+            "" => Some(false),
+            cell => parse_number(cell, self.decimal_comma).map(|_| true),
+        };
+        let note = below::without_number(&mut rows, first);
+        self.notes.extend(note);
+        self.rows = rows;
+        // Several blank lines part sweeps.
+        let [start] = apart else { return Ok(()) };
+        let numbers = |column: usize| {
+            self.rows.iter().map(|row| parse_number(self.cell(row, column), self.decimal_comma)).collect()
+        };
+        match *start < self.rows.len() {
+            true => below::stand_apart(&self.rows, *start, (0..self.headings.len()).map(numbers)),
+            false => Ok(()),
+        }
     }
 
     /// The numbers of a column.
@@ -250,6 +288,32 @@ impl Table {
             None => names,
         }
     }
+}
+
+/// A note on lines below a table that hold numbers, the first of which is line `n` of the file, from 0.
+///
+/// # Errors
+/// Where another table stands there, with more columns: the steps of a measurement may differ in them.
+fn text_below(lines: &[&str], n: usize, dialect: Dialect, columns: usize) -> Result<Option<String>> {
+    let number = |cell: &&str| parse_number(cell, dialect.decimal_comma).is_some();
+    let numbers = |line: &str| cells(line, dialect.separator).iter().filter(|cell| number(cell)).count();
+    let is_whole = |line: &str| {
+        let cells = cells(line, dialect.separator);
+        cells.len() >= 2 && cells.iter().all(|cell| number(cell) || is_missing(cell))
+    };
+    let whole = || lines.iter().filter(|line| !is_comment(line) && is_whole(line) && numbers(line) >= 2);
+    let shown: String = lines[0].chars().take(60).collect();
+    if whole().filter(|line| cells(line, dialect.separator).len() > columns).count() >= 2 {
+        return Err(another_heading(lines[0]).at(n + 1));
+    }
+    if whole().count() >= 2 {
+        return Ok(Some(format!(
+            "another table below, from line {} ({shown:?}) on, is not read; to read it, write it to a file of its own",
+            n + 1
+        )));
+    }
+    let held = lines.iter().any(|line| numbers(line) > 0);
+    Ok(held.then(|| format!("the text below the points, from line {} ({shown:?}) on, is not read", n + 1)))
 }
 
 /// Name, unit and base of each column, from its header and the line of units.

@@ -48,7 +48,7 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
         Role::Temperature
             if matches!(
                 bare.as_str(),
-                "c" | "âc" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius"
+                "c" | "âc" | "oc" | "degc" | "celsius" | "degreec" | "degreesc" | "gradc" | "degcelsius"
             ) =>
         {
             "°C"
@@ -72,9 +72,10 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
             "deg"
         }
         Role::Time => match bare.as_str() {
-            "sec" | "secs" | "second" | "seconds" | "sek" | "sekunde" | "sekunden" => "s",
+            "sec" | "secs" | "second" | "seconds" | "sek" | "sekunde" | "sekunden" | "secondes" => "s",
             "min" | "mins" | "minute" | "minutes" | "minuten" => "min",
-            "hr" | "hrs" | "hour" | "hours" | "std" | "stunde" | "stunden" => "h",
+            "hr" | "hrs" | "hour" | "hours" | "std" | "stunde" | "stunden" | "heure" | "heures" => "h",
+            "days" | "tag" | "tage" | "jour" | "jours" => "d",
             "msec" | "millisecond" | "milliseconds" | "millisekunden" => "ms",
             _ => unit,
         },
@@ -87,7 +88,9 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
 pub(super) fn is_angular(name: &str) -> bool {
     let name = role::bare(name);
     name == "w"
-        || ["ang", "omega", "ω", "kreis", "winkel", "reducedang"].iter().any(|start| name.starts_with(start))
+        || ["ang", "omega", "ω", "kreis", "winkel", "reducedang", "pulsation", "fréquenceang"]
+            .iter()
+            .any(|start| name.starts_with(start))
 }
 
 /// The numbers in SI, or the row and why not.

@@ -54,12 +54,31 @@ pub enum Problem {
         /// What it holds instead.
         detail: String,
     },
+    /// The file states neither.
+    #[error(
+        "the {format} file holds neither its physical size{size} nor a unit of length for its heights{unit}; give both (`size` and \
+         `height_unit`; --size A,B --height-unit U), as in --size '100 um, 100 um' --height-unit nm"
+    )]
+    MissingSizeAndHeightUnit {
+        /// Format of the file.
+        format: Format,
+        /// What it holds in place of a size.
+        size: String,
+        /// What it holds in place of a unit.
+        unit: String,
+    },
     /// A profile of so many heights has neither positions nor a length.
     #[error(
         "the file holds {0} heights without their positions; give the length of the profile, {0} times the spacing of its points \
          (`size = [\"4 mm\"]`, --size '4 mm'), or a file with two columns, position and height"
     )]
     MissingLength(usize),
+    /// A profile of so many heights has neither positions, a length, nor a unit.
+    #[error(
+        "the file holds {0} heights without their positions and without a unit; give the length of the profile, {0} times the spacing of its \
+         points, and the unit of the heights (`size` and `height_unit`; --size L --height-unit U), as in --size '4 mm' --height-unit um"
+    )]
+    MissingLengthAndHeightUnit(usize),
     /// The file states no unit of the heights, or a unit that is not a length.
     #[error(
         "the {format} file holds no unit of length for its heights{detail}; give it (`height_unit`, --height-unit U)"

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::unit::{LoneA, metres};
+use super::unit::{LoneA, line_with_length, metres};
 use super::{Format, Problem, ReadOptions, Result, Topography, grid};
 
 /// The result of a reader.
@@ -96,15 +96,22 @@ pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) 
                 Unit::Other(label) => format!("{channel} (it says {label:?})"),
                 _ => String::new(),
             };
-            return Err(Problem::MissingHeightUnit { format, detail });
+            return Err(match (options.size, lateral) {
+                (None, Lateral::Unstated(size)) => {
+                    Problem::MissingSizeAndHeightUnit { format, size, unit: detail }
+                }
+                _ => Problem::MissingHeightUnit { format, detail },
+            });
         }
     };
-    let mut told = None;
+    let (mut told, named) = (None, line_with_length(&metadata));
     let size = match (options.size, lateral) {
         (Some(size), _) => size,
         (None, Lateral::Metres(size)) => size,
         // Bare numbers throughout: one unit for all of them.
-        (None, Lateral::Bare(size)) if options.height_unit.is_some() && !matches!(unit, Unit::Metres(_)) => {
+        (None, Lateral::Bare(size))
+            if options.height_unit.is_some() && !matches!(unit, Unit::Metres(_)) && named.is_none() =>
+        {
             let (x, y) = (size[0], size[1]);
             told = Some(format!(
                 "x and y, {x} x {y} without a unit in the file, are taken in the unit given for the heights, {height_unit:e} m"
@@ -112,7 +119,10 @@ pub(super) fn finish(format: Format, measured: Measured, options: &ReadOptions) 
             size.map(|length| length * height_unit)
         }
         (None, Lateral::Bare([x, y])) => {
-            return Err(Problem::MissingSize { format, detail: format!(" with a unit (it says {x} x {y})") });
+            let beside = named
+                .map_or(String::new(), |line| format!(", and {line:?}, whose unit may be that of x and y"));
+            let detail = format!(" with a unit (it says {x} x {y}{beside})");
+            return Err(Problem::MissingSize { format, detail });
         }
         (None, Lateral::Unstated(detail)) => return Err(Problem::MissingSize { format, detail }),
     };

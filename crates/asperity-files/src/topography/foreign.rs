@@ -59,7 +59,7 @@ const BY_EXPORT: [(&[u8], &str, &str); 5] = [
 ];
 
 /// Formats of text whose numbers would be taken for a matrix or for points in lengths.
-const TEXTS: [(&str, &str, &str); 4] = [
+const TEXTS: [(&str, &str, &str); 5] = [
     (
         "zygo xyz data file",
         "Zygo XYZ (text of an interferometer, whose x and y are numbers of pixels)",
@@ -70,6 +70,7 @@ const TEXTS: [(&str, &str, &str); 4] = [
         "Zygo ASCII (text of an interferometer, whose numbers are phases)",
         "MetroPro DAT, SDF or SUR",
     ),
+    ("igor", "Igor text (.itx, whose lines run along y)", "an Igor binary wave (.ibw)"),
     ("dsaa", "Surfer grid (DSAA)", "x, y and z as text, or the rows alone"),
     (
         "ncols",

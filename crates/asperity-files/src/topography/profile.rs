@@ -13,6 +13,7 @@ use ndarray::Array2;
 
 use super::finish::Unit;
 use super::text::{is_profile, read_columns};
+use super::unit::line_with_length;
 use super::{Format, Problem, ReadOptions, Result, TopographyError, format, unpack};
 
 /// Spacings that agree to this share of their mean are equal: instruments round their positions.
@@ -83,7 +84,12 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile> {
         Unit::Unstated => (None, String::new()),
         Unit::Other(label) => (None, format!(" (it says {label:?})")),
     };
-    let missing = || Problem::MissingHeightUnit { format: Format::Text, detail };
+    let is_bare = columns.positions.is_none() && options.size.is_none() && detail.is_empty();
+    let named = line_with_length(&columns.metadata);
+    let missing = || match is_bare {
+        true => Problem::MissingLengthAndHeightUnit(count),
+        false => Problem::MissingHeightUnit { format: Format::Text, detail },
+    };
     let height_unit = options.height_unit.or(stated).ok_or_else(missing)?;
     if columns.positions.is_none() && options.size.is_none() {
         return Err(Problem::MissingLength(count));
@@ -111,9 +117,15 @@ fn profile(bytes: &[u8], options: &ReadOptions) -> Result<Profile> {
         (Some([length, _]), _) => length,
         (None, Some(metres)) => length * metres,
         // Bare numbers throughout: one unit for all of them.
-        (None, None) if stated.is_none() => length * height_unit,
+        (None, None) if stated.is_none() && named.is_none() => {
+            history.push(format!(
+                "the positions, without a unit in the file, are taken in the unit given for the heights, {height_unit:e} m"
+            ));
+            length * height_unit
+        }
         (None, None) => {
-            let detail = " with a unit for its positions".to_owned();
+            let beside = named.map_or(String::new(), |line| format!(" (it says {line:?}, which may be one)"));
+            let detail = format!(" with a unit for its positions{beside}");
             return Err(Problem::MissingSize { format: Format::Text, detail });
         }
     };
@@ -181,6 +193,10 @@ mod tests {
             .unwrap_or_else(|error| panic!("{error}:\n{text}"))
     }
 
+    fn unit_of(metres: f64) -> ReadOptions {
+        ReadOptions { height_unit: Some(metres), ..ReadOptions::default() }
+    }
+
     fn message(text: &str, options: &ReadOptions) -> String {
         profile_of(text.as_bytes(), options).unwrap_err().to_string()
     }
@@ -231,6 +247,13 @@ mod tests {
         let long = ReadOptions { size: Some([1.0, 1.0]), ..unit };
         assert_eq!(profile_of(text.as_bytes(), &long).unwrap().surface.grid().size()[0], 1.0);
         assert!(message("x; z [um]\n0; 1\n1; 2\n", &ReadOptions::default()).contains("size"));
+        // One unit for all is told; not where a line above the numbers names one.
+        let told = profile_of(text.as_bytes(), &unit_of(1e-6)).unwrap().history;
+        assert!(told[0].contains("unit given for the heights"), "{told:?}");
+        for above in ["Einheit x: mm", "Position in mm, height in um", "Scan: 3 µm"] {
+            let asked = message(&format!("{above}\n{text}"), &unit_of(1e-6));
+            assert!(asked.contains("--size") && asked.contains(above), "{asked}");
+        }
     }
 
     #[test]
@@ -247,7 +270,8 @@ mod tests {
         }
         // With a comma this is two columns of integers, or one of decimals: no heights are read with the unit of the one.
         assert!(message("z [nm]\n1,0\n2,0\n0,5\n", &long).contains("--height-unit"));
-        assert!(message("1\n2\n", &ReadOptions::default()).contains("--height-unit"));
+        let both = message("1\n2\n", &ReadOptions::default());
+        assert!(both.contains("--size '4 mm' --height-unit um"), "{both}");
         assert!(message("z [nm]\n1\n2\n", &ReadOptions::default()).contains("--size '4 mm'"));
     }
 

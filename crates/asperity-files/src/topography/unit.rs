@@ -39,6 +39,17 @@ pub(super) fn metres(label: &str, lone_a: LoneA) -> Option<f64> {
     })
 }
 
+/// The first line of a header that names a unit of length, which may be one of the numbers below: single letters are none.
+pub(super) fn line_with_length(metadata: &[(String, String)]) -> Option<String> {
+    let is_length =
+        |word: &str| word.chars().count() > 1 && word != "in" && metres(word, LoneA::Ampere).is_some();
+    let lines = metadata
+        .iter()
+        .map(|(key, value)| if key.is_empty() { value.clone() } else { format!("{key}: {value}") });
+    let mut named = lines.filter(|line| line.split(|c: char| !c.is_alphanumeric()).any(is_length));
+    named.next().map(|line| line.chars().take(60).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -321,3 +321,86 @@ fn empty_and_binary_files_are_named() {
         assert!(error.message.contains(words), "{error}");
     }
 }
+
+/// E' = 10 MPa, E'' = 2 MPa at 1, 2 and 4 Hz.
+#[test]
+fn names_of_other_languages_and_rheometers_are_known() {
+    let tau = std::f64::consts::TAU;
+    for (head, row, shear) in [
+        (
+            "Fréquence (Hz);Module de conservation E' (MPa);Module de perte E'' (MPa);Température (°C)",
+            (|f| format!("{f};10,0;2;25")) as fn(f64) -> String,
+            Some(Modulus::Young),
+        ),
+        (
+            "Pulsation (1/s);Module de stockage G' (kPa);Module de perte G'' (kPa)",
+            |f| format!("{:?};10000;2000", f * std::f64::consts::TAU).replace('.', ","),
+            Some(Modulus::Shear),
+        ),
+        (
+            "Fréquence [Hz];Module complexe [MPa];Angle de perte [°]",
+            |f| format!("{f};10,198039;11,3099325"),
+            None,
+        ),
+        (
+            "Angular frequency(rad/s);Shear modulus (elastic component)(Pa);Shear modulus (viscous component)(Pa)",
+            |f| format!("{:?};1.0e7;2e6", f * std::f64::consts::TAU),
+            Some(Modulus::Shear),
+        ),
+    ] {
+        let text = [1.0, 2.0, 4.0].map(row).join("\n");
+        let curves = read(&format!("{head}\n{text}\n"), Kind::Dma);
+        assert_eq!(
+            (kind_of(&format!("{head}\n{text}\n")).unwrap(), curves.measure),
+            (Kind::Dma, shear),
+            "{head}"
+        );
+        let sweep = &curves.sweeps[0];
+        for (n, wanted) in [tau, 2.0 * tau, 4.0 * tau].into_iter().enumerate() {
+            assert!((sweep.x[n] / wanted - 1.0).abs() < 1e-12, "{head}: {:?}", sweep.x);
+            // The angle is written with 9 digits.
+            assert!((sweep.curves[0][n] / 10e6 - 1.0).abs() < 1e-7, "{head}: {:?}", sweep.curves);
+            assert!((sweep.curves[1][n] / 2e6 - 1.0).abs() < 1e-7, "{head}: {:?}", sweep.curves);
+        }
+    }
+    for (head, kind, value) in [
+        ("Temps [heures];Module de relaxation [MPa]", Kind::Relaxation, 4e6),
+        ("Durée [h];Complaisance de fluage [1/MPa]", Kind::Creep, 4e-6),
+        ("Zeit [h];Kriechnachgiebigkeit [1/MPa]", Kind::Creep, 4e-6),
+    ] {
+        let text = format!("{head}\n0,5;4\n1;4\n2;4\n");
+        assert_eq!(kind_of(&text).unwrap(), kind, "{head}");
+        let sweep = read(&text, kind).sweeps.remove(0);
+        assert!(
+            sweep.x[0] == 1800.0 && (sweep.curves[0][0] / value - 1.0).abs() < 1e-12,
+            "{head}: {sweep:?}"
+        );
+    }
+}
+
+#[test]
+fn a_creep_modulus_is_no_relaxation_modulus() {
+    for name in ["Creep modulus", "Kriechmodul", "Module de fluage", "Kriechmodul E_c(t)"] {
+        let text = format!("Zeit [s];{name} [MPa]\n1;3\n2;2,5\n4;2\n");
+        let error = kind_of(&text).unwrap_err();
+        assert!(error.message.contains("reciprocal is the creep compliance"), "{error}");
+        // Nor if the caller says so.
+        let said = Columns {
+            columns: [(Role::Modulus, asperity_files::curve::Column::Number(2))].into(),
+            ..Columns::default()
+        };
+        let error = Curves::parse("x".as_ref(), text.as_bytes(), Kind::Relaxation, &said).unwrap_err();
+        assert!(error.message.contains("reciprocal is the creep compliance"), "{error}");
+    }
+}
+
+#[test]
+fn a_title_above_a_repeated_heading_is_no_point() {
+    let block = |n: i32| format!("Messung {n}\nZeit [s]\tE(t) [MPa]\n1\t{n}\n2\t{n}\n3\t{n}\n4\t{n}\n\n");
+    let error = parse(&(block(2) + &block(1)), Kind::Relaxation).unwrap_err();
+    assert_eq!((error.line, error.remedy.clone()), (Some(10), Some(Remedy::Segment(2))), "{error}");
+    let said = Columns { segment: Some(2), ..Columns::default() };
+    let curves =
+        Curves::parse("x".as_ref(), (block(2) + &block(1)).as_bytes(), Kind::Relaxation, &said).unwrap();
+    assert_eq!(curves.sweeps[0].curves[0], [1e6; 4]);
+}

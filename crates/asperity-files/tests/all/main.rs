@@ -1,6 +1,7 @@
 //! The facts about measured files, in one program.
 
 mod curve_alternatives;
+mod curve_ends;
 mod curve_exports;
 mod curve_files;
 mod curve_hostile;

@@ -152,6 +152,9 @@ fn a_file_of_several_images_has_channels() {
 fn what_the_file_does_not_say_is_asked_for() {
     let text = "1 2 3 4\n5 6 7 8\n";
     let error = read(text).unwrap_err();
+    assert!(matches!(error.problem, Problem::MissingSizeAndHeightUnit { .. }), "{error}");
+    assert!(error.to_string().contains("--size '100 um, 100 um' --height-unit nm"), "{error}");
+    let error = with(text, Some([1.0, 1.0]), None).unwrap_err();
     assert!(matches!(error.problem, Problem::MissingHeightUnit { .. }), "{error}");
     let error = with(text, None, Some(NM)).unwrap_err();
     assert!(matches!(error.problem, Problem::MissingSize { .. }), "{error}");
@@ -429,4 +432,24 @@ fn text_of_other_formats_is_no_matrix_and_no_list_of_points() {
         let options = ReadOptions { height_unit: Some(NM), ..ReadOptions::default() };
         assert!(profile_of(text.as_bytes(), &options).is_err());
     }
+}
+
+#[test]
+fn sections_units_in_remarks_and_coordinates_are_no_heights() {
+    // A section is no unit; both things that are missing are asked for.
+    let error = read("[HEADER]\nPitch=0.25\n[DATA]\n1 2 3 5\n4 5 7 6\n").unwrap_err().to_string();
+    assert!(error.contains("--size A,B --height-unit U") && !error.contains("DATA"), "{error}");
+    // x and y are in mm, whatever the unit of the heights is.
+    let error = with("# x and y in mm\n0 0 1\n0 1 2\n1 0 3\n1 1 5\n", None, Some(NM)).unwrap_err();
+    assert!(matches!(error.problem, Problem::MissingSize { .. }), "{error}");
+    assert!(error.to_string().contains("x and y in mm"), "{error}");
+    // Coordinates beside six lines of heights, and above them with a word in the corner.
+    let row = |y: u32| format!("{};3;1;{};2\n", 0.5 * f64::from(y), (y * y) % 5);
+    let text = format!("y\\x [µm];0;0.5;1;1.5\n{}", (0..6).map(row).collect::<String>());
+    let error = with(&text, Some([1.0, 1.0]), Some(NM)).unwrap_err().to_string();
+    assert!(error.contains("the first column is evenly spaced"), "{error}");
+    // The lines of Igor's text run along y.
+    let igor = "IGOR\nWAVES/D/N=(2,3) height\nBEGIN\n1 2 3\n4 5 6\nEND\n";
+    let error = with(igor, Some([1.0, 1.0]), Some(NM)).unwrap_err().to_string();
+    assert!(error.contains("Igor text") && error.contains(".ibw"), "{error}");
 }

@@ -245,6 +245,7 @@ def fit_file(
     columns: dict[str, str | int],
     units: dict[str, str],
     sheet: str | None,
+    segment: int | None,
     options: dict[str, Any],
 ) -> dict[str, Any]: ...
 def read_force_file(path: str, spring_constant: float | None, sensitivity: float | None) -> list[dict[str, Any]] | None: ...

@@ -273,6 +273,7 @@ class OfFile(Spectra):
     _: KW_ONLY
     kind: str | None = None
     sheet: str | None = None
+    segment: int | None = None
     columns: Mapping[str, str | int] | None = None
     units: Mapping[str, str] | None = None
     modulus: Measure | None = None
@@ -378,6 +379,7 @@ def fit_file(given: OfFile) -> Fit:
         tan_delta, temperature
     units : units by quantity, which go before those of the header
     sheet : sheet of a spreadsheet; by default the first one that names such columns
+    segment : which of several steps or sweeps below each other to read, from 1; by default all, as one
     modulus : "young" or "shear": what the values are; by default what the header says (E or D, G or J), or else "young"
     shift : without it, sweeps at several temperatures are shifted as the file says, or by an estimate about the temperature that is
         nearest to 20 degC (`notes` say so)
@@ -388,7 +390,9 @@ def fit_file(given: OfFile) -> Fit:
     OSError : the file cannot be read
     """
     places = {role: at if isinstance(at, str) else count(f"column of {role}", at) for role, at in (given.columns or {}).items()}
-    found = _core.fit_file(os.fspath(given.path), given.kind, places, dict(given.units or {}), given.sheet, given.keys(given.kind))
+    segment = None if given.segment is None else count("segment", given.segment)
+    units = dict(given.units or {})
+    found = _core.fit_file(os.fspath(given.path), given.kind, places, units, given.sheet, segment, given.keys(given.kind))
     return given.fit_of(found)
 
 

@@ -28,6 +28,7 @@ pub const FIT: &[Choice] = &[
     ("window", "part of the curve", "0.1 Hz, 100 Hz"),
     ("long-time", "after the data: free, solid or fluid", "solid"),
     ("sheet", "sheet of a spreadsheet", "Sheet1"),
+    ("segment", "which of several steps or sweeps, from 1", "1"),
     ("kind", "what was measured: relaxation, creep or dma", "dma"),
     ("column", "columns of quantities, by number or header", "frequency=1; storage=2"),
     ("unit", "units that the header does not name", "storage=MPa"),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use asperity::finding::celsius_meant;
 use asperity::material::{FitOptions, Shift};
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest, VerticalWord,
+    Column, Columns, CurveError, Curves, Kind, Role, ShiftRequest, VerticalRequest, VerticalWord, Words,
     angular_frequency, read_shift_table,
 };
 use asperity_io::quantity::{
@@ -18,7 +18,7 @@ use crate::input::read;
 
 /// A fault of a file, with what to do in the words of the command.
 pub fn refused(error: CurveError) -> Failure {
-    Failure::input(error.told(Remedy::in_command))
+    Failure::input(error.told(Words::Command))
 }
 
 /// The measured data of a file.
@@ -27,7 +27,8 @@ pub fn curves(path: &std::path::Path, data: &Data) -> Result<Curves, Failure> {
         Some(kind) => kind,
         None => Curves::kind_of(path, data.sheet.as_deref()).map_err(refused)?,
     };
-    let said = Columns { sheet: data.sheet.clone(), ..columns(&data.column, &data.unit)? };
+    let (sheet, segment) = (data.sheet.clone(), data.segment);
+    let said = Columns { sheet, segment, ..columns(&data.column, &data.unit)? };
     Curves::read(path, kind, &said).map_err(refused)
 }
 
@@ -49,7 +50,7 @@ pub fn options(args: &Fit) -> FitOptions {
 pub fn columns(columns: &[String], units: &[String]) -> Result<Columns, Failure> {
     let column = |text: String| text.parse().map_or_else(|_| Column::Name(text), Column::Number);
     let columns = pairs("--column", columns)?.into_iter().map(|(role, text)| (role, column(text))).collect();
-    Ok(Columns { columns, units: pairs("--unit", units)?, sheet: None })
+    Ok(Columns { columns, units: pairs("--unit", units)?, ..Columns::default() })
 }
 
 /// "frequency=1", "storage=E' [MPa]".

@@ -10,7 +10,9 @@ use asperity::material::{Modulus, Shift};
 use asperity::surface::Operation;
 use asperity::surface::process::Outliers;
 use asperity_io::case::Case;
-use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest, thinned};
+use asperity_io::curve::{
+    Columns, CurveError, Curves, Indentation, Kind, Request, ShiftRequest, Words, thinned,
+};
 use asperity_io::output::write_all;
 use asperity_io::topography::Topography;
 
@@ -74,6 +76,17 @@ fn marked(text: &str) -> Vec<String> {
     keys
 }
 
+/// A fault of measured data: what to say of them is said where they are fitted.
+fn unread(error: CurveError) -> Failure {
+    let first = match error.remedies(Words::Command).is_empty() {
+        true => "",
+        false => {
+            " (options of `asperity material fit`: fit the data with them and -o material.toml, and give --material material.toml here)"
+        }
+    };
+    Failure::input(error.told(Words::Command) + first)
+}
+
 /// What a case needs to know of the material.
 pub(super) struct Material {
     /// Lines of the body.
@@ -91,8 +104,8 @@ impl Material {
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             return Material::written(path);
         }
-        let kind = Curves::kind_of(path, None)?;
-        let mut curves = Curves::read(path, kind, &Columns::default())?;
+        let kind = Curves::kind_of(path, None).map_err(unread)?;
+        let mut curves = Curves::read(path, kind, &Columns::default()).map_err(unread)?;
         let ends = extent(curves.sweeps.iter().flat_map(|sweep| sweep.x.iter().copied()));
         let (model, measure_key, range, mut times) = match kind {
             Kind::Dma => {

@@ -317,6 +317,13 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
         return before.iter().zip(units).map(|(c, unit)| Column { name: c.name.clone(), unit }).collect();
     }
     let blanks = separator == ' ' && !text.contains([':', '=']);
+    // "x and y in mm": a sentence, not the names of three columns.
+    let is_sentence = |field: &&str| {
+        matches!(*field, "and" | "are" | "is" | "of" | "und" | "sind" | "ist" | "et" | "sont" | "est")
+    };
+    if blanks && fields.iter().any(is_sentence) {
+        return vec![];
+    }
     let mut columns: Vec<Column> = vec![];
     for field in fields.into_iter().take(1000) {
         let (name, unit) = match field.split_once(['[', '(']) {
@@ -329,6 +336,9 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
             Some(last) if blanks && last.unit.is_none() && metres(field, LoneA::Ampere).is_some() => {
                 last.unit = Some(field.to_owned());
             }
+            // "[DATA]": a section.
+            None if name.is_empty()
+                && unit.as_deref().is_none_or(|unit| metres(unit, LoneA::Angstrom).is_none()) => {}
             // Blanks separate the names of columns, and a name from its unit.
             Some(last) if name.is_empty() && last.unit.is_none() => last.unit = unit,
             _ => columns.push(Column { name: name.to_owned(), unit }),

@@ -80,8 +80,12 @@ fn refuse_counters(table: &Table, line: usize) -> Result<()> {
         return Err(found(format!("the first line of numbers (line {line})"), lines[0]));
     }
     let column = |n: usize| rest.iter().map(move |line| &line[n]);
-    if rest.len() >= LEAST && is_even(column(0)) && !(1..columns).any(|n| is_even(column(n))) {
-        return Err(found("the first column".to_owned(), &column(0).copied().collect::<Vec<f64>>()));
+    // The first line of numbers may hold coordinates too.
+    let whole = |n: usize| lines.iter().map(move |line| &line[n]);
+    let is_counter = |is_even: &dyn Fn(usize) -> bool| is_even(0) && !(1..columns).any(is_even);
+    let counts = rest.len() >= LEAST && is_counter(&|n| is_even(column(n)));
+    if counts || (lines.len() >= LEAST && is_counter(&|n| is_even(whole(n)))) {
+        return Err(found("the first column".to_owned(), &whole(0).copied().collect::<Vec<f64>>()));
     }
     Ok(())
 }

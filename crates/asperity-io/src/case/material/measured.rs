@@ -51,6 +51,9 @@ macro_rules! table {
             /// The sheet of a spreadsheet (.xls, .xlsx); the first one that names such columns if not given.
             #[schemars(example = "Exported Data")]
             sheet: Option<String>,
+            /// Which of several steps or sweeps below each other to read, from 1; all of them, as one, if not given.
+            #[schemars(example = 1)]
+            segment: Option<Whole<1>>,
             /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
             #[schemars(example = serde_json::json!($columns_example))]
             columns: Option<$columns>,
@@ -87,7 +90,8 @@ macro_rules! table {
 
             fn model(&self, at: &Place<'_>, dependence: super::Dependence) -> Option<super::Model> {
                 use crate::curve::{Columns, Kind, Role};
-                let mut columns = Columns { sheet: self.sheet.clone(), ..Columns::default() };
+                let (sheet, segment) = (self.sheet.clone(), self.segment.map(Whole::count));
+                let mut columns = Columns { sheet, segment, ..Columns::default() };
                 $(
                     if let Some(column) = self.columns.as_ref().and_then(|columns| columns.$key.as_ref()) {
                         columns.columns.insert(Role::$role, column.choice());

@@ -89,20 +89,59 @@ def test_an_infinite_wavelength_goes_through_a_file(tmp_path) -> None:
     assert text == contact.methods() and again(text, tmp_path).approach[0] == pytest.approx(contact.approach, rel=1e-7)
 
 
-def test_a_file_is_named_and_arrays_are_remarked(tmp_path) -> None:
+def test_a_file_is_named(tmp_path) -> None:
     ROUGH.write(tmp_path / "rough.npz")
     read = asp.Surface.read(tmp_path / "rough.npz")
     result = asp.solve(read + BALL, PRONY, load=1e-3, times=[1.0])
     assert f"heights of a file (path {tmp_path}/rough.npz, level none)" in result.methods()
     assert np.array_equal(again(result.methods(), tmp_path).approach, result.approach)
-    other = asp.solve(np.array(BALL.heights), PRONY, size=SIZE, load=1e-3, times=[1.0], hardness=np.full((24, 24), 1e9))
-    text = other.methods()
-    assert "heights given as an array" in text and "# The heights were given as an array" in text and "# The hardness of each cell" in text
-    march = asp.march(2.0 * BALL, PRONY, load=1e-3, times=[1.0, 2.0])
+
+
+def changed_march() -> asp.Result:
+    march = asp.march(BALL, PRONY, load=1e-3, times=[1.0, 2.0])
     next(march)
     march.prescribe(load=asp.ramp_to(2e-3, duration=0.5))
-    text = march.result().methods()
-    assert "The heights went through: heights times 2" in text and "# From row 1 on was prescribed: load, ramp, from current, value 2 mN, duration 500 ms." in text
+    return march.result()
+
+
+#: Results whose case lacks something, and how it is named.
+LACKING: dict[str, tuple[Callable[[], asp.Result], str]] = {
+    "heights": (lambda: asp.solve(np.array(BALL.heights), PRONY, size=SIZE, load=1e-3, times=[1.0]), "The heights were given as an array"),
+    "hardness": (lambda: asp.solve(BALL, PRONY, load=1e-3, times=[1.0], hardness=np.full((24, 24), 1e9)), "The hardness of each cell was given as an array."),
+    "steps": (lambda: asp.solve(2.0 * BALL, PRONY, load=1e-3, times=[1.0]), "What was done to the heights: heights times 2."),
+    "prescribed": (changed_march, "From row 1 on was prescribed: load, ramp, from current, value 2 mN, duration 500 ms."),
+    "wear": (
+        lambda: asp.solve(BALL, STEEL, load=1e-3, times=[1.0], wear=asp.Wear(1e-15, velocity=0.1, map=np.ones((24, 24)))),
+        "The coefficients of [wear] were given as an array.",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_a_case_that_lacks_something_does_not_run(name: str, tmp_path) -> None:
+    run, words = LACKING[name]
+    text = run().methods()
+    assert "The case but for what it leaves out" in text and f'"{words}' in text and "in full" not in text, text
+    with pytest.raises(asp.CaseError, match="left_out"):
+        again(text, tmp_path)
+
+
+def test_times_of_fields_are_rows_again(tmp_path) -> None:
+    result = asp.solve(BALL, PRONY, load=asp.ramp(1e-3, duration=1.0), times=asp.uniform(2.0, 4), field_times=[0.3, 1.1])
+    same = again(result.methods(), tmp_path)
+    assert 0.3 in same.time and np.array_equal(same.time, result.time) and np.array_equal(same.approach, result.approach)
+
+
+@pytest.mark.parametrize("given", [dict(load=[1e-3, 2e-3, 1.5e-3]), dict(pressure=[1e2, 1e3]), dict(approach=[1e-7])])
+def test_a_curve_runs_again(given: dict[str, list[float]], tmp_path) -> None:
+    curve = asp.elastic(BALL, 4e6, **given)
+    text = curve.methods()
+    assert ("was prescribed in 3 contacts, 1 mN to 1.5 mN." in text) == ("load" in given)
+    same = again(text, tmp_path)
+    # Each contact is solved to 1e-6 of the mean displacement, from another start in a case.
+    assert np.allclose(same.approach[: len(curve)], curve.approach, rtol=1e-5, atol=0.0)
+    assert np.allclose(same.load[: len(curve)], curve.load, rtol=1e-5, atol=0.0)
+    assert "The load is 2 mN." in asp.elastic(BALL, 4e6, load=2e-3).methods()
 
 
 def test_the_words_of_a_case_file_are_kept(tmp_path) -> None:

@@ -295,6 +295,10 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     def __iter__(self) -> Iterator[ElasticContact]:
         return iter(self._contacts)
 
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
+        """A paragraph on what was computed, as :meth:`Result.methods`; the case of it has a row for each contact."""
+        return _result(self._contacts, False, self._control, self._prescribed).methods(bibtex=bibtex, case=case)
+
     def to_dataframe(self) -> pandas.DataFrame:
         """The numbers as pandas.DataFrame, a row for each contact."""
         return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
@@ -344,9 +348,21 @@ def _checksum(values: Floats) -> int:
     return zlib.crc32(np.ascontiguousarray(values).data)
 
 
-def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
-    """Contacts as the rows of a result."""
+def _course(control: str, values: Sequence[float]) -> dict[str, Any]:
+    """The keys with which an elastic body goes through the contacts of a curve, one each second."""
+    if len(values) == 1:
+        return {"load": {"control": control, "history": {"kind": "step", "value": values[0]}}}
+    points = [[float(n), value] for n, value in enumerate(values)]
+    return {"load": {"control": control, "history": {"kind": "table", "points": points}}, "time": {"times": [time for time, _ in points[1:]]}}
+
+
+def _result(contacts: list[ElasticContact], with_fields: bool, control: str = "", values: Sequence[float] = ()) -> Result:
+    """Contacts as the rows of a result; those of a curve know what was prescribed."""
     first = contacts[0]
+    setup = first._setup
+    if values:
+        setup["curve"] = {"control": control, "first": values[0], "last": values[-1]}
+        setup["given"] = {**setup["given"], **_course(control, values)} if "given" in setup else None
     for contact in contacts:
         contact._whole("a result")
     names = ("pressure", "gap", "displacement") if with_fields else ()
@@ -356,7 +372,7 @@ def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
         field_steps=range(len(contacts)) if with_fields else [],
         initial_gap=first.initial_gap,
         size=first.size,
-        attributes=attributes_of("Elastic contact", "complete", first._setup, first.findings),
+        attributes=attributes_of("Elastic contact", "complete", setup, first.findings),
     )
 
 

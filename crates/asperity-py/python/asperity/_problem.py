@@ -10,7 +10,7 @@ import numpy as np
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, line, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._fit import Fit
@@ -99,7 +99,9 @@ class Problem:
     def given(self, shape: Surface, keys: dict[str, Any]) -> dict[str, Any]:
         """The keys of the case as they were given, without arrays: surfaces by what they were made or read from."""
         bodies = [{key: value for key, value in body.items() if key != "hardness_array"} for body in keys["body"]]
-        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies})
+        # Each of them is a step.
+        kept = {} if self.field_times is None else {"times": line("field_times", self.field_times).tolist()}
+        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies, "output": {**keys["output"], **kept}})
         return found
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:

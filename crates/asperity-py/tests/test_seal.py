@@ -71,7 +71,7 @@ def test_another_length_and_pressure_take_the_same_runs_and_a_lifted_seal_has_no
 def test_what_is_wrong_is_told():
     with pytest.raises(asp.CaseError, match="directory="):
         asp.seal(CASE)
-    with pytest.raises(asp.CaseError, match="cannot be read"):
+    with pytest.raises(FileNotFoundError, match="none.toml"):
         asp.seal("none.toml")
 
 

@@ -52,3 +52,12 @@ def test_a_number_is_a_coefficient_and_a_map_is_a_factor():
 def test_what_cannot_be_is_refused(wear, message):
     with pytest.raises(asp.CaseError, match=message):
         asp.solve(ball(), STEEL, load=10.0, times=[1.0], wear=wear())
+
+
+def test_a_velocity_with_a_unit_is_a_plain_number():
+    u = pytest.importorskip("pint", reason="pint is not installed").UnitRegistry()
+    assert asp.Wear(1e-15, velocity=100 * u.mm / u.s) == asp.Wear(1e-15, velocity=0.1)
+    with pytest.raises(asp.CaseError, match="velocity is in meter"):
+        asp.Wear(1e-15, velocity=1 * u.m)
+    told = asp.solve(ball(), STEEL, load=1.0, times=[1.0], wear=asp.Wear(1e-15, velocity=0.1)).methods(case=False)
+    assert "The velocity of the wear is prescribed (step, value 100 mm/s)." in told

@@ -24,7 +24,7 @@ from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
 from ._spoken import spoken
-from ._states import State, touching
+from ._states import NO_HALF_SPACE, State, touching
 from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
@@ -193,7 +193,8 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
 
     def _state(self) -> State:
         self._whole("its state")
-        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure))
+        other = None if self._planned.kernel is None else NO_HALF_SPACE
+        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure), no_stress=other)
 
     @property
     def _setup(self) -> dict[str, Any]:
@@ -299,6 +300,10 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
         """A paragraph on what was computed, as :meth:`Result.methods`; the case of it has a row for each contact."""
         return _result(self._contacts, False, self._control, self._prescribed).methods(bibtex=bibtex, case=case)
 
+    def to_result(self) -> Result:
+        """The contacts as the rows of a result, one each second, with the fields "pressure", "gap" and "displacement"."""
+        return _result(self._contacts, True, self._control, self._prescribed)
+
     def to_dataframe(self) -> pandas.DataFrame:
         """The numbers as pandas.DataFrame, a row for each contact."""
         return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
@@ -366,8 +371,11 @@ def _result(contacts: list[ElasticContact], with_fields: bool, control: str = ""
     for contact in contacts:
         contact._whole("a result")
     names = ("pressure", "gap", "displacement") if with_fields else ()
+    table = {name: np.array([contact._row[name] for contact in contacts]) for name in ROW}
+    if values:
+        table["time"] = np.arange(len(contacts), dtype=np.float64)
     return Result(
-        table={name: np.array([contact._row[name] for contact in contacts]) for name in ROW},
+        table=table,
         fields={name: np.array([getattr(contact, name) for contact in contacts]) for name in names},
         field_steps=range(len(contacts)) if with_fields else [],
         initial_gap=first.initial_gap,

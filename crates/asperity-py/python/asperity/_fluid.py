@@ -31,7 +31,7 @@ class Fluid(Table):
     inlet: History | float
     outlet: float
     viscosity: float | None = None
-    gas: str | None = None
+    gas: Gas | None = None
     molar_mass: float | None = None
     temperature: float | None = None
     coupling: Coupling = "two-way"

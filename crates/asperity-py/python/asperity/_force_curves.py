@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _html
-from ._arrays import AnyPath, Counts, Floats, choice, columns, number
+from ._arrays import AnyPath, Counts, Floats, NotThere, choice, columns, number
 from ._core import CaseError
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control
@@ -149,6 +150,14 @@ class ForceCurve(ReadOnlyArrays):
     #: What the file says, by its words in SI units: "spring constant" [N/m], "sensitivity" [m/V], "grid index x", ...
     metadata: dict[str, Any] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        given = {name: value for name in ("force", "depth", "deflection", "height") if (value := getattr(self, name)) is not None}
+        if not len(given["force"]):
+            raise CaseError("a force curve holds one point at least")
+        # A record may hold gaps, but no column may be shorter than another.
+        self.__dict__.update(zip(given, columns(**given)))
+        super().__post_init__()
+
     @classmethod
     def from_deflection(
         cls, height: Any, deflection: Any, /, *, spring_constant: float, sensitivity: float | None = None,
@@ -191,15 +200,16 @@ def read_force_curves(path: AnyPath) -> list[ForceCurve]:
     Raises
     ------
     ImportError : without the package: ``pip install 'asperity[afm]'``
-    CaseError : no file, a format that the package does not know, a file that it cannot read, or no curve with force and height
+    FileNotFoundError : there is no such file
+    CaseError : a format that the package does not know, a file that it cannot read, or no curve with force and height
     """
     try:
         import afmformats  # type: ignore[import-not-found, import-untyped, unused-ignore]
     except ImportError:
         raise ImportError("files of force curves are read by afmformats: pip install 'asperity[afm]'") from None
     name = os.fspath(path)
-    if not os.path.isfile(name):
-        raise CaseError(f"{name}: no such file")
+    if not os.path.exists(name):
+        raise NotThere(errno.ENOENT, "the file does not exist; check its name and folder", name)
     try:
         found = [_curve(data) for data in afmformats.load_data(name)]
     # Any reader fails in its own way on a damaged file, and the package's own errors are no Exceptions.

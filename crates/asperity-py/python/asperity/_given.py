@@ -142,6 +142,16 @@ def load(known: dict[str, Any], unit: str) -> str:
     return f" ({_listed(history, unit if table.get('control') == 'load' else _CONTROLLED.get(table.get('control', ''), ''))})"
 
 
+def courses(known: dict[str, Any], unit: str) -> Iterator[str]:
+    """What was prescribed along the surfaces, whose force has this unit, and the velocity with which they wear."""
+    if along := known.get("tangential"):
+        own = unit if along["control"] == "force" else "m"
+        told = [f"along {axis} ({_listed(along[axis], own)})" for axis in "xy" if along.get(axis) and along[axis] != {"kind": "step", "value": 0.0}]
+        yield f"The tangential {along['control']} is prescribed {' and '.join(told)}." if told else ""
+    if isinstance(velocity := known.get("wear", {}).get("velocity"), dict):
+        yield f"The velocity of the wear is prescribed ({_listed(velocity, 'm/s')})."
+
+
 def seal(known: dict[str, Any]) -> str:
     """What the seal is of which the case is a patch."""
     told = known.get("seal", {})

@@ -110,6 +110,7 @@ def _sentences(result: Result) -> Iterator[str]:
         yield f"The load is {quantity(float(result.load[0]), result.units('load'))}."
     if setup.get("stage_controls"):
         yield _of_load(result, setup, given)
+    yield from _given.courses(given, result.units("load"))
     if setup.get("motion"):
         yield _of_motion(result, setup["motion"])
     yield _given.motion(given)
@@ -193,7 +194,7 @@ def _of_load(result: Result, setup: dict[str, Any], given: dict[str, Any]) -> st
     controls = [_CONTROLS.get(control, control) for control in setup["stage_controls"]]
     text = f"The {controls[0]} was prescribed{_given.load(given, result.units('load'))}." if len(controls) == 1 else f"{len(controls)} stages prescribed in turn {', '.join(controls)}."
     for name, told in (setup.get("sampled") or {}).items():
-        unit = result.units(name) if name == "load" else UNITS[name]
+        unit = result.units(name) if name == "load" else told.get("unit") or UNITS[name]
         text += f" The {name} is a function of time, taken at {told['points']:.0f} points, within {quantity(told['error'], unit)} of it."
     if changes := len(setup.get("prescribed") or []):
         text += f" It was changed {'once' if changes == 1 else f'{changes} times'} between two rows."

@@ -20,16 +20,6 @@ def read_only(value: Any) -> Any:
     return value
 
 
-class ReadOnlyArrays:
-    """A dataclass whose arrays are read-only, in its copies and pickles too."""
-
-    def __post_init__(self) -> None:
-        self.__setstate__(self.__dict__)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update({name: read_only(value) for name, value in state.items()})
-
-
 class Named:
     """An object whose misspelt attributes are answered with the nearest one."""
 
@@ -41,6 +31,16 @@ class Named:
                 return object.__getattribute__(self, name)
             known = [] if name.startswith("_") else [one for one in dir(self) if one[0] != "_"]
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{meant(name, known)}")
+
+
+class ReadOnlyArrays(Named):
+    """A dataclass whose arrays are read-only, in its copies and pickles too."""
+
+    def __post_init__(self) -> None:
+        self.__setstate__(self.__dict__)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({name: read_only(value) for name, value in state.items()})
 
 
 class Sealed(Named):

@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._declared import arguments_of
-from ._arrays import AnyPath, cells_of, meant, path_of
+from ._arrays import AnyPath, NotThere, cells_of, meant, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -86,7 +86,8 @@ class Step(Numbers, Sealed):
         setup = self._march._setup
         contact = np.ascontiguousarray(self.field("contact") > 0, dtype=np.uint8)
         shear = (self.field("traction_x"), self.field("traction_y")) if "friction" in setup else None
-        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear)
+        layered = _core.LAYERED_STRESS if "layer_separable" in setup else None
+        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear, layered)
 
     def _number(self, name: str) -> float:
         row = self.__dict__["_row"]
@@ -422,7 +423,7 @@ def source(case: Case) -> tuple[str, str | None]:
         return os.curdir, case
     path = os.fspath(case)
     if not os.path.exists(path):
-        raise FileNotFoundError(errno.ENOENT, "there is no case file of this name", path)
+        raise NotThere(errno.ENOENT, "there is no case file of this name", path)
     return path, None
 
 

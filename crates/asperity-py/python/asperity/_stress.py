@@ -197,6 +197,8 @@ def of_state(held: Any, poisson: Scalar | None, depths: str | Sequence[float]) -
         found: Stress = held.stress(depths=depths, poisson=poisson)
         return found
     state = held._state()
+    if state.no_stress is not None:
+        raise CaseError(state.no_stress)
     ratio = poisson if poisson is not None else state.poisson[0] if state.poisson else None
     if ratio is None:
         raise CaseError(f"the {type(held).__name__} does not say the Poisson's ratio of the body, or it changes with time: give it, as in poisson=0.3")

@@ -130,6 +130,11 @@ def study(
         if given is not None:
             count(what, given)
     common, walk = _common(case, plan.names)
+    read = "which is what the processes of the study read: change it there, or give it as an argument"
+    if walk.changed:
+        raise CaseError(f"{'; '.join(walk.changed)}, {read}")
+    if walk.older:
+        warn_caller(f"{'; '.join(walk.older)}, {read}", UserWarning)
     _check_names(common, plan)
     _check_loads(common, over, plan)
     place = None if folder is None else os.path.abspath(os.fspath(folder))
@@ -286,11 +291,11 @@ def _common(case: Any, names: list[str]) -> tuple[dict[str, Any], Walk]:
     if callable(case) and not isinstance(case, (str, os.PathLike)):
         base, walk = base_of_function(case, {})
         return {"function": case, "base": base}, walk
+    path, text = source(case)
     try:
-        path, text = source(case)
         whole = Path(path).read_text(encoding="utf-8") if text is None else text
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"the case {getattr(error, 'filename', None) or case} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except UnicodeDecodeError as error:
+        raise CaseError(f"the case {case} cannot be read: {error}") from None
     directory = os.path.abspath(os.path.dirname(path) if text is None else path)
     return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}, Walk()
 

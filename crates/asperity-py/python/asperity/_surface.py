@@ -22,7 +22,7 @@ from ._histories import one_of
 from ._parameters import call, parameters
 from ._sealed import Named, ReadOnlyArrays
 from ._spoken import spoken
-from ._units import carries, factor_of, is_labelled, variable_of
+from ._units import carries, factor_of, has_unit, is_angle, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
 
@@ -307,7 +307,10 @@ class Surface(OnGrid, Named):
         >>> asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(1e-6, 1e-6)).rotate(quarter_turns=1).heights.tolist()
         [[2.0, 4.0], [1.0, 3.0]]
         """
-        whole = count("quarter_turns", turns if quarter_turns is None else quarter_turns, -(2**31))
+        given = turns if quarter_turns is None else quarter_turns
+        # An angle says itself how many they are.
+        given = round(angle("quarter_turns", given) / (np.pi / 2), 9) if has_unit(given) and is_angle(given) else given
+        whole = count("quarter_turns", given, -(2**31))
         if quarter_turns is None and abs(whole) > 3:
             nearest = f" ({whole} degrees are rotate({whole // 90}))" if whole % 90 == 0 and abs(whole) <= 270 else ""
             raise CaseError(f"rotate turns by quarter turns, and {whole} of them are meant for degrees{nearest}; else write rotate(quarter_turns={whole})")

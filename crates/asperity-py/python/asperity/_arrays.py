@@ -69,7 +69,7 @@ def meant(word: Any, words: Iterable[str], alike: float = 0.6) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-class NotThere(CaseError, FileNotFoundError):
+class NotThere(FileNotFoundError, CaseError):
     """A file that is not there: an OSError, and an argument that is wrong."""
 
 

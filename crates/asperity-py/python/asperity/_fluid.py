@@ -7,7 +7,7 @@ from typing import Any
 
 from ._declared import Table
 from ._histories import History, as_history
-from ._words import Coupling, Flow, Pockets, Reference, Sides
+from ._words import Coupling, Flow, Gas, Pockets, Reference, Sides
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

@@ -163,7 +163,7 @@ def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     >>> bool(abs(added[0] - 0.5 * result.contact_fraction[0]) < 1e-12)
     True
     """
-    if isinstance(shear_stress, (list, tuple, dict)) or getattr(shear_stress, "ndim", 0):
+    if isinstance(shear_stress, (list, tuple, dict)) or np.ndim(shear_stress) > 0:
         raise CaseError("shear_stress is one number [Pa] here: one that depends on the velocity is given to asperity.slide or asperity.steady, as shear_stress=")
     load, force = result.load, number("shear_stress", shear_stress) * result.contact_area
     share = np.divide(force, load, out=np.zeros_like(load), where=load > 0)

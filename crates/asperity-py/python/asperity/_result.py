@@ -279,7 +279,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         >>> bool(abs(below.survey()["max_mises"] / result.max_pressure[-1] - 0.62) < 0.03)
         True
         """
-        setup, at = self._setup, {"time": time, "velocity": velocity, "index": index, "method": method}
+        setup = self._setup
+        at: dict[str, Any] = {"time": time, "velocity": velocity, "index": index, "method": method}
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
         if setup.get("kernel") == "given":

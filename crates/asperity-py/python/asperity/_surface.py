@@ -307,7 +307,7 @@ class Surface(OnGrid, Named):
         >>> asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(1e-6, 1e-6)).rotate(quarter_turns=1).heights.tolist()
         [[2.0, 4.0], [1.0, 3.0]]
         """
-        given = turns if quarter_turns is None else quarter_turns
+        given: Any = turns if quarter_turns is None else quarter_turns
         # An angle says itself how many they are.
         given = round(angle("quarter_turns", given) / (np.pi / 2), 9) if has_unit(given) and is_angle(given) else given
         whole = count("quarter_turns", given, -(2**31))

@@ -58,7 +58,7 @@ def study(
     ----------
     case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`, with `velocities`
         of :func:`steady`, with `velocity` or `path` of :func:`slide`; or
-        a function that takes the parameters of a point and returns a :class:`Result`
+        a function that takes the parameters of a point and returns a :class:`Result`, or what :func:`elastic` returns
     over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
         ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Give values that are neither numbers nor text (materials,
         surfaces) with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.

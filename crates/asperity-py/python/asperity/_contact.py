@@ -69,7 +69,7 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
-        self.origin, self.history = surface._origin, surface.history
+        self.origin, self.history, self.since = surface._origin, surface.history, surface._since
         self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
@@ -202,7 +202,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
         of_cells = isinstance(self.hardness, np.ndarray)
         kernel = "half-space" if self._planned.kernel is None else "given"
-        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history}
+        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history, "since": self._planned.since}
         return {**known, **told, **({} if kernel == "given" else {"given": in_json(self._case)})}
 
     @property

@@ -12,7 +12,7 @@ import json
 import os
 import re
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -267,8 +267,10 @@ def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
         # Numbers in SI units, which are labels too.
         unit = _load_unit(values) if name == "load" else None
         values = [number(name, value, unit) for value in (np.atleast_1d(bare(name, values, unit)) if carries(values) or is_labelled(values) else values)]
-    elif is_labelled(values):
+    elif is_labelled(values) or (hasattr(values, "to_numpy") and getattr(values, "ndim", 0) == 1):
         values = np.asarray(values)
+    elif isinstance(values, Iterator):
+        values = list(values)
     if isinstance(values, Mapping):
         pairs = [(label(key), value) for key, value in values.items()]
     elif isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):

@@ -105,12 +105,18 @@ class Surface(OnGrid, Named):
 
     @property
     def _origin(self) -> list[dict[str, Any]]:
-        """The parts, as those of a case, that it was made or read from; what was done to them since is in the history."""
+        """The parts, as those of a case, that it was made or read from."""
         return list(self.__dict__.get("_from", [{"kind": "array"}]))
 
-    def _of(self, origin: list[dict[str, Any]]) -> Surface:
-        """The surface itself, of this origin."""
+    @property
+    def _since(self) -> list[str]:
+        """The steps of the history that were done to these parts; a file holds the steps before it was written."""
+        return list(self.__dict__.get("_done", []))
+
+    def _of(self, origin: list[dict[str, Any]], since: Sequence[str] = ()) -> Surface:
+        """The surface itself, of this origin and what was done since."""
         object.__setattr__(self, "_from", origin)
+        object.__setattr__(self, "_done", list(since))
         return self
 
     # Operators of numpy arrays leave a surface to its own.
@@ -164,7 +170,7 @@ class Surface(OnGrid, Named):
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         if done := [*self.history, *other.history]:
             known["history"] = done
-        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin])
+        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin], [*self._since, *other._since])
 
     def __radd__(self, other: Summand) -> Surface:
         if isinstance(other, np.ndarray):
@@ -202,7 +208,7 @@ class Surface(OnGrid, Named):
     def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
         """The surface with other heights, on which this was done."""
         changed = Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
-        return changed._of(self._origin)
+        return changed._of(self._origin, [*self._since, *done])
 
     def __pos__(self) -> Surface:
         return self
@@ -495,7 +501,7 @@ class Surface(OnGrid, Named):
 
     @staticmethod
     def read(
-        path: AnyPath, *, size: Size = None, height_unit: float | None = None,
+        path: AnyPath, *, size: Size = None, height_unit: float | str | None = None,
         channel: str | int | None = None, level: Form | None = None, fill: Fill | None = None, transpose: bool | None = None
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
@@ -506,7 +512,7 @@ class Surface(OnGrid, Named):
             PLU, IBW, NID, FRT; also packed by gzip. Other formats are read by the package SurfaceTopography where it is
             installed; the metadata say so under "reader".
         size : lengths along x and y [m], or the length of a profile, needed where the file holds none
-        height_unit : unit of the numbers in the file [m], needed if the file does not state it
+        height_unit : unit of the numbers in the file, "um" or in m (1e-6), needed if the file does not state it
         channel : which one, by name or number (from 0), where the file holds several; by default the first of heights.
             ``surface.metadata["channels"]`` lists them.
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
@@ -524,7 +530,7 @@ class Surface(OnGrid, Named):
         """
         path = os.fspath(path)
         given = None if size is None else list(lengths("size", size))
-        unit = None if height_unit is None else number("height_unit", height_unit)
+        unit = None if height_unit is None else factor_of("height_unit", height_unit, "m") if isinstance(height_unit, str) else number("height_unit", height_unit)
         name = None if channel is None else str(channel)
         try:
             found = _core.read_surface(path, given, unit, name)
@@ -543,10 +549,12 @@ class Surface(OnGrid, Named):
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
-        how = {"size": given, "height_unit": unit, "channel": name, "transpose": transpose, "level": level or "none", "fill": fill}
-        surface._of([{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}])
+        how = {"size": given, "height_unit": _named(unit), "channel": name, "level": level or "none", "fill": fill}
+        origin = [{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}]
         surface = surface if level is None else surface.level(level)
-        return surface if fill is None else surface.fill(fill)
+        surface = surface if fill is None else surface.fill(fill)
+        # A case reads the lines of a file along x.
+        return surface._of(origin, ["transposed"] if transpose else [])
 
     @staticmethod
     def self_affine(
@@ -719,6 +727,11 @@ def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict
         article = "surface" if what == "heights" else what
         raise CaseError(f"the {article} is an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
     return value, size, {}
+
+
+def _named(unit: float | None) -> str | None:
+    """A unit of heights as a case names it."""
+    return None if unit is None else {1.0: "m", 1e-3: "mm", 1e-6: "um", 1e-9: "nm"}.get(unit, f"{unit!r} m")
 
 
 def _of_topography(topography: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:

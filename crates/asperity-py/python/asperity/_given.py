@@ -113,7 +113,7 @@ def surfaces(known: dict[str, Any]) -> str:
     told = []
     for part in known.get("surface", []):
         name = _PARTS.get(part["kind"], f"a {part['kind'].replace('-', ' ')}")
-        words = _listed({key: value for key, value in part.items() if key not in ("kind", "array", "single", "history") and not _is_middle(key, value)})
+        words = _listed({key: value for key, value in part.items() if key not in ("kind", "array", "single", "history", "process") and not _is_middle(key, value)})
         told.append(f"{name} ({words})" if words else name)
     return f"The surface is {' plus '.join(told)}." if told else ""
 

@@ -20,6 +20,7 @@ from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
 from ._parameters import call, parameters
+from ._steps import Operation, operations, with_steps
 from ._sealed import Named, ReadOnlyArrays
 from ._spoken import spoken
 from ._units import carries, factor_of, has_unit, is_angle, is_labelled, variable_of
@@ -105,18 +106,20 @@ class Surface(OnGrid, Named):
 
     @property
     def _origin(self) -> list[dict[str, Any]]:
-        """The parts, as those of a case, that it was made or read from."""
-        return list(self.__dict__.get("_from", [{"kind": "array"}]))
+        """The parts, as those of a case, that it was made or read from, a file with the steps that were done to it."""
+        parts, steps = self.__dict__.get("_from", [{"kind": "array"}]), self.__dict__.get("_steps", [])
+        return [with_steps(parts[0], steps)] if steps else list(parts)
 
     @property
     def _since(self) -> list[str]:
-        """The steps of the history that were done to these parts; a file holds the steps before it was written."""
-        return list(self.__dict__.get("_done", []))
+        """The steps of the history that its parts do not say; a file holds the steps before it was written."""
+        return [] if self.__dict__.get("_steps") else list(self.__dict__.get("_done", []))
 
-    def _of(self, origin: list[dict[str, Any]], since: Sequence[str] = ()) -> Surface:
-        """The surface itself, of this origin and what was done since."""
-        object.__setattr__(self, "_from", origin)
-        object.__setattr__(self, "_done", list(since))
+    def _of(self, origin: list[dict[str, Any]], since: Sequence[str] = (), steps: list[Operation] | None = None) -> Surface:
+        """The surface itself, of this origin and what was done since, in words and, of a file alone, as steps."""
+        of_file = [part["kind"] for part in origin] == ["file"]
+        for name, value in (("_from", origin), ("_done", list(since)), ("_steps", steps if of_file else None)):
+            object.__setattr__(self, name, value)
         return self
 
     # Operators of numpy arrays leave a surface to its own.
@@ -131,7 +134,7 @@ class Surface(OnGrid, Named):
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        made = {name: self.__dict__[name] for name in ("_made", "_from") if name in self.__dict__} or None
+        made = {name: self.__dict__[name] for name in ("_made", "_from", "_done", "_steps") if name in self.__dict__} or None
         return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,), made
 
     @property
@@ -203,12 +206,14 @@ class Surface(OnGrid, Named):
         return self * (1.0 / share)
 
     def __neg__(self) -> Surface:
-        return self._changed(-self.heights, ["inverted"])
+        return self._changed(-self.heights, ["inverted"], steps=[{"op": "invert"}])
 
-    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
-        """The surface with other heights, on which this was done."""
+    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None, steps: list[Operation] | None = None) -> Surface:
+        """The surface with other heights, on which this was done, in words and as steps."""
+        before = self.__dict__.get("_steps", None if self.__dict__.get("_done") else [])
         changed = Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
-        return changed._of(self._origin, [*self._since, *done])
+        parts, words = self.__dict__.get("_from", [{"kind": "array"}]), [*self.__dict__.get("_done", []), *done]
+        return changed._of(parts, words, None if before is None or steps is None else [*before, *steps])
 
     def __pos__(self) -> Surface:
         return self
@@ -253,7 +258,7 @@ class Surface(OnGrid, Named):
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
         heights, size, done = self._compiled.process([str(step) for step in steps])
-        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size)
+        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size, operations([str(step) for step in steps]))
         for step in done:
             if step.startswith("crop"):
                 changed.metadata.pop("repeats", None)
@@ -263,7 +268,7 @@ class Surface(OnGrid, Named):
 
     def level(self, form: Form = "plane") -> Surface:
         """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
-        return self.process(f"level={form}")
+        return self.process(f"level form={form}")
 
     def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
         """Spikes become undefined: points beyond the lines through their neighbours at `radius` cells by more than `threshold`
@@ -304,7 +309,7 @@ class Surface(OnGrid, Named):
 
     def flip(self, axis: Axis) -> Surface:
         """Mirrored along "x" or "y"."""
-        return self.process(f"flip={axis}")
+        return self.process(f"flip axis={axis}")
 
     def rotate(self, turns: int = 1, /, *, quarter_turns: int | None = None) -> Surface:
         """Turned by quarter turns of 90 degrees from x towards y; negative ones turn back. More than 3 need the name `quarter_turns`.
@@ -320,7 +325,7 @@ class Surface(OnGrid, Named):
         if quarter_turns is None and abs(whole) > 3:
             nearest = f" ({whole} degrees are rotate({whole // 90}))" if whole % 90 == 0 and abs(whole) <= 270 else ""
             raise CaseError(f"rotate turns by quarter turns, and {whole} of them are meant for degrees{nearest}; else write rotate(quarter_turns={whole})")
-        return self.process(f"rotate={whole}")
+        return self.process(f"rotate quarter_turns={whole}")
 
     def invert(self) -> Surface:
         """Heights of the other sign: a replica."""
@@ -338,7 +343,7 @@ class Surface(OnGrid, Named):
         >>> whole.heights[0].tolist(), whole.heights[:, 0].tolist(), whole.size
         ([1.0, 2.0, 2.0, 1.0], [1.0, 3.0, 3.0, 1.0], (4e-06, 4e-06))
         """
-        return self.process("border=mirror")
+        return self.process("border method=mirror")
 
     def window(self, shape: Window = "tukey", *, share: float | None = None) -> Surface:
         """Faded to zero at the edges by a "tukey" window that rises over a `share` of the length (0.1), or a "hann" one.
@@ -554,7 +559,7 @@ class Surface(OnGrid, Named):
         surface = surface if level is None else surface.level(level)
         surface = surface if fill is None else surface.fill(fill)
         # A case reads the lines of a file along x.
-        return surface._of(origin, ["transposed"] if transpose else [])
+        return surface._of(origin, ["transposed"] if transpose else [], None if transpose else [])
 
     @staticmethod
     def self_affine(

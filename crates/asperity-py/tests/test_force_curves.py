@@ -227,3 +227,14 @@ def test_a_file_that_is_not_there_is_an_os_error():
     pytest.importorskip("afmformats")
     with pytest.raises(FileNotFoundError, match="none.jpk"):
         asp.read_force_curves("none.jpk")
+
+
+def test_nanometres_are_no_metres(recwarn):
+    depth = np.linspace(0.0, 1e-6, 40)[::-1]
+    load = 4 / 3 * 1e6 / 0.75 * np.sqrt(RADIUS) * depth**1.5
+    asp.fit_indentation(None, load, depth, radius=RADIUS, indenter="paraboloid", poisson=0.5, model="hertz")
+    assert not recwarn.list
+    with pytest.warns(asp.ResultWarning, match="the depth is up to 1000 m: lengths are in m and loads in N"):
+        asp.fit_indentation(None, load, 1e9 * depth, radius=RADIUS, indenter="paraboloid", poisson=0.5, model="hertz")
+    with pytest.warns(asp.ResultWarning, match="the radius is 10 m"):
+        asp.fit_indentation(None, load, depth, radius=10.0, indenter="paraboloid", poisson=0.5, model="hertz")

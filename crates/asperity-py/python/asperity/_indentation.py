@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args, overload
 import numpy as np
 
 from . import _core
-from ._arrays import Counts, Floats, angle as radians, choice, columns, count, number
+from ._arrays import Counts, Floats, angle as radians, choice, columns, count, line, number
 from ._core import CaseError
+from ._findings import warn_caller
 from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
 from ._materials import PowerLaw, Prony
 from ._sealed import ReadOnlyArrays
@@ -277,6 +278,7 @@ def fit_indentation(
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
     size = _size(indenter, radius, angle)
+    _check_lengths(None if radius is None else size, depth)
     if model in get_args(Model):
         if thickness is not None:
             raise CaseError(
@@ -318,6 +320,15 @@ def fit_indentation(
     series = [(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]]
     material = Prony(equilibrium=factor * found["equilibrium"][0], terms=series, **of_body)
     return IndentationFit(**{**found, **own, **record, "terms": fitted}, material=material)
+
+
+def _check_lengths(radius: float | None, depth: Any) -> None:
+    """Warns of lengths that no indentation has: numbers in nm or um."""
+    deepest = np.abs(line("depth", depth)).max(initial=0.0)
+    for what, length, most in (("radius", radius or 0.0, 1.0), ("depth", deepest, 0.1)):
+        if most < length < np.inf:
+            words = f"the {what} is {'up to ' if what == 'depth' else ''}{length:.4g} m: lengths are in m and loads in N [unlikely-unit]"
+            warn_caller(words, code="unlikely-unit")
 
 
 def _size(indenter: str, radius: Any, angle: Any) -> float:

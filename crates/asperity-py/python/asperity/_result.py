@@ -18,7 +18,7 @@ from . import _core, _html
 from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, meant, number, numbers_of, plain
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
-from ._findings import Finding, findings_of
+from ._findings import Finding, findings_of, warn_caller
 from ._grid import OnGrid
 from ._leakage import over_time, stored
 from ._methods import paragraph
@@ -225,7 +225,13 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         True
         """
         time, load, approach = (self._table[name].tolist() for name in ("time", "load", "approach"))
-        found = _core.cycles_of(time, load, approach, in_hertz("frequency", frequency), number("start", start))
+        cycles, sines = in_hertz("frequency", frequency), [sine["frequency"] for sine in self._setup.get("sines") or []]
+        if sines and not any(np.isclose(cycles, known, rtol=1e-6, atol=0.0) for known in sines):
+            own = ", ".join(f"{known:g}" for known in dict.fromkeys(sines))
+            angular = any(np.isclose(cycles, 2.0 * np.pi * known, rtol=1e-3, atol=0.0) for known in sines)
+            hint = "; an angular frequency [rad/s] is divided by 2 pi" if angular else ""
+            warn_caller(f"cycles of {cycles:g} Hz are asked for, but what was prescribed is a sine of {own} Hz{hint}")
+        found = _core.cycles_of(time, load, approach, cycles, number("start", start))
         return [Cycle(*numbers) for numbers in found]
 
     @property

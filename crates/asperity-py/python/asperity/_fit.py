@@ -23,6 +23,7 @@ from ._core import CaseError
 from ._declared import arguments_of, check
 from ._findings import Finding, findings_of, warn
 from ._materials import _OF_BODY, Creep, Material, Prony
+from ._paragraphs import of_fit
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
@@ -134,6 +135,10 @@ class Fit(ReadOnlyArrays):
     def plot(self, *, ax: Any = None) -> Any:
         """Points and fitted curves over reduced time or angular frequency, on logarithmic axes."""
         return fitted(self, ax)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_fit(self, bibtex)
 
     def __repr__(self) -> str:
         first, last = self.window

@@ -12,6 +12,7 @@ import numpy as np
 from . import _core, _html
 from ._arrays import AnyPath, Counts, Floats, NotThere, choice, columns, number
 from ._core import CaseError
+from ._paragraphs import of_force_fit
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control
 from .plot import recorded
@@ -65,6 +66,10 @@ class ForceFit(ReadOnlyArrays):
         takes the further arguments."""
         along, baseline = ("depth", "m", self.depth - self.touch[0]), self.baseline[0]
         return recorded(along, "load", self.load - baseline, self.predicted - baseline, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_force_fit(self, bibtex)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]

@@ -19,6 +19,7 @@ from ._core import CaseError
 from ._findings import warn_caller
 from ._force_curves import ForceFit, Interval, cantilever, fit_force_curve, interval, share, table
 from ._materials import PowerLaw, Prony
+from ._paragraphs import of_indentation
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control, Indenter, Interface, LongTime, Model
 from .plot import recorded
@@ -66,6 +67,13 @@ class IndentationFit(ReadOnlyArrays):
         """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        numbers = [("E(0)", self.instantaneous, "Pa"), ("E(inf)", self.equilibrium, "Pa")]
+        numbers += [(f"E_{n}", modulus, "Pa") for n, (modulus, _) in enumerate(self.terms, 1)]
+        numbers += [(f"tau_{n}", time, "s") for n, (_, time) in enumerate(self.terms, 1)]
+        return of_indentation(self, f"A Prony series with {len(self.terms)} term{'s' if len(self.terms) != 1 else ''}", numbers, bibtex)
 
     def __repr__(self) -> str:
         low, high = self.equilibrium[1:]
@@ -116,6 +124,10 @@ class PowerLawFit(ReadOnlyArrays):
         """As :meth:`IndentationFit.plot`."""
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_indentation(self, "A power law", [("E(1 s)", self.modulus, "Pa"), ("the exponent", self.exponent, "")], bibtex)
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} {value:.4g} ({low:.4g} to {high:.4g})" for name, (value, low, high) in self._lines())

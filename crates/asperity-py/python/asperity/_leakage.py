@@ -12,6 +12,7 @@ from . import _core
 from ._arrays import ArrayLike, Floats, Scalar, Size, centres, choice, field, in_order, number, numbers_of, pair
 from ._columns import GAS_LEAKS, LEAKS, dataset, variable
 from ._findings import Finding, findings_of, warn, warn_caller
+from ._paragraphs import of_leak
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
 from ._surface import Labelled, SurfaceLike, _parts
@@ -114,6 +115,10 @@ class Leakage(Sealed):
             data["conductance"] = variable(("flow_direction", "gradient_direction"), self.conductance, "m^3", "effective conductance")
         places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip("xy", self._gap.shape, self._size)}
         return dataset(data, places)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was computed, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_leak(self, bibtex)
 
     def __repr__(self) -> str:
         nx, ny = self._gap.shape

@@ -13,6 +13,7 @@ from . import _core
 from ._columns import dataset, variable
 from ._core import CaseError
 from ._findings import warn_caller
+from ._paragraphs import of_stress
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
 from ._surface import SurfaceLike, _parts
@@ -129,6 +130,10 @@ class Stress(Sealed):
         }
         places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip(axes, self._pressure.shape, self._given[1])}
         return dataset(data, {"depth": variable("depth", self.depths, "m", "depth below the surface"), **places})
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was computed, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_stress(self, bibtex)
 
     def __repr__(self) -> str:
         ratio = "changing with time" if self._poisson is None else f"{self._poisson:g}"

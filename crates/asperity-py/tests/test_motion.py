@@ -187,3 +187,16 @@ def test_a_sweep_has_stress_and_leak_of_each_velocity() -> None:
     for course in ([(1e-3, 1e3), (1.0, 1e4)], {"peak": 1e4}):
         with pytest.raises(asp.CaseError, match="shear_stress is one number"):
             asp.rubber_friction(sweep, shear_stress=course)
+
+
+def test_the_stress_of_a_contact_in_motion_leaves_its_friction_out(recwarn) -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    given = dict(pressure=2e4, velocities=[0.01], boundary="periodic")
+    bare = asp.steady(wave, rubber, **given)
+    recwarn.clear()
+    plain = bare.stress(depths=[1e-5])
+    assert not recwarn.list
+    rubbed = asp.steady(wave, rubber, **given, shear_stress=1e4)
+    with pytest.warns(UserWarning, match="the friction of the surfaces in motion is not in it"):
+        assert np.array_equal(rubbed.stress(depths=[1e-5]).mises, plain.mises)

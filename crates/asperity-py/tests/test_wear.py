@@ -61,3 +61,13 @@ def test_a_velocity_with_a_unit_is_a_plain_number():
         asp.Wear(1e-15, velocity=1 * u.m)
     told = asp.solve(ball(), STEEL, load=1.0, times=[1.0], wear=asp.Wear(1e-15, velocity=0.1)).methods(case=False)
     assert "The velocity of the wear is prescribed (step, value 100 mm/s)." in told
+
+
+def test_numbers_in_other_units_are_told(recwarn):
+    asp.Wear((1e-15, 1e-11), velocity=0.1)
+    asp.Flash((0.2, 400.0), (1e-7, 1e-3), friction=0.3)
+    assert not recwarn.list
+    with pytest.warns(asp.ResultWarning, match=r"the coefficient of wear is 1e-06 m2/N"):
+        asp.Wear((1e-15, 1e-6), velocity=0.1)
+    with pytest.warns(asp.ResultWarning, match=r"the diffusivity is 0.2 m2/s, .*: the conductivity"):
+        asp.Flash(1e-7, 0.2, friction=0.3)

@@ -19,6 +19,7 @@ from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choi
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn_caller
+from ._given import given as case_of
 from ._grid import OnGrid
 from ._leakage import over_time, stored
 from ._methods import paragraph
@@ -287,6 +288,12 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """
         setup = self._setup
         at: dict[str, Any] = {"time": time, "velocity": velocity, "index": index, "method": method}
+        known = case_of(self) or {}
+        if "shear_stress" in known.get("motion", {}) or known.get("flash", {}).get("friction"):
+            warn_caller(
+                "the stress is that of the pressure alone: the friction of the surfaces in motion is not in it. asperity.stress takes it with the bare "
+                "pressure, as tractions=", UserWarning
+            )
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
         if setup.get("kernel") == "given":

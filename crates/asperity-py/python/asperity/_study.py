@@ -198,7 +198,12 @@ def _tell_unseen(walk: Walk, points: list[Point], place: str) -> None:
 
 
 def _warn(points: list[Point], done: dict[int, Solved]) -> None:
-    """A warning for each kind of finding, which names the first of its points. Those of a case are in its results."""
+    """A warning for each kind of finding, which names the first of its points, and one for the points that failed. Findings of a case are in
+    its results."""
+    failed = [(point, done[n][1]) for n, point in enumerate(points) if done[n][0] == "failed"]
+    if failed:
+        place = ", ".join(f"{name} = {value}" for name, value in label_all(failed[0][0].settings).items())
+        warn_caller(f"{len(failed)} of {len(points)} points failed; the first, {place}: {failed[0][1]}")
     held: dict[str, list[tuple[Any, Finding]]] = {}
     for n, point in enumerate(points):
         result = done[n][2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 import textwrap
@@ -129,3 +130,24 @@ def test_options_of_a_table_are_written_as_python_writes_them() -> None:
     assert in_python('leakage.coupling = "two-way" computes it') == 'fluid=asperity.Fluid(..., coupling="two-way") computes it'
     assert in_python('friction.coupling = "full" computes it') == 'friction=asperity.Friction(..., coupling="full") computes it'
     assert in_python("adhesion.allow_unresolved = true") == "adhesion=asperity.Adhesion(..., allow_unresolved=True)"
+
+
+def test_the_nearest_argument_of_a_class_is_proposed() -> None:
+    for made, wrong, right in (
+        (lambda: asp.Zener(shear=1e6, shear_kelvin=1e6, retardation=1.0, poisson=0.5), "retardation", "retardation_time"),
+        (lambda: asp.Adhesion(work=0.1, rnge=1e-6), "rnge", "range"), (lambda: asp.Wear(1e-15, velocty=0.1), "velocty", "velocity"),
+        (lambda: asp.Stage(laod=1.0), "laod", "load"), (lambda: asp.Surface(np.zeros((2, 2)), sise=(1.0, 1.0)), "sise", "size"),
+    ):
+        with pytest.raises(TypeError, match=rf"\(\) takes no argument '{wrong}'; did you mean '{right}'"):
+            made()
+    # What a class takes, and errors from within, stay as they are.
+    assert list(inspect.signature(asp.Wear).parameters)[:2] == ["coefficient", "velocity"]
+    with pytest.raises(TypeError, match="missing 1 required positional argument"):
+        asp.Wear()
+
+    class Own(asp.Wear):
+        def __post_init__(self) -> None:
+            raise TypeError("of its own")
+
+    with pytest.raises(TypeError, match="of its own"):
+        Own(1e-15)

@@ -288,8 +288,8 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         """
         setup = self._setup
         at: dict[str, Any] = {"time": time, "velocity": velocity, "index": index, "method": method}
-        known = case_of(self) or {}
-        if "shear_stress" in known.get("motion", {}) or known.get("flash", {}).get("friction"):
+        case = case_of(self) or {}
+        if "shear_stress" in case.get("motion", {}) or case.get("flash", {}).get("friction"):
             warn_caller(
                 "the stress is that of the pressure alone: the friction of the surfaces in motion is not in it. asperity.stress takes it with the bare "
                 "pressure, as tractions=", UserWarning

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+from abc import ABCMeta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +22,29 @@ def read_only(value: Any) -> Any:
     return value
 
 
-class Named:
+class Spelled(ABCMeta):
+    """The type of classes whose misspelt arguments are answered with the nearest one."""
+
+    if not TYPE_CHECKING:  # where it would hide what the classes take
+
+        def __call__(cls, *positional, **named):
+            try:
+                return super().__call__(*positional, **named)
+            except TypeError as error:
+                # One that comes from within has an inner frame.
+                within = error.__traceback__.tb_next.tb_next if error.__traceback__ and error.__traceback__.tb_next else None
+                known = () if within else inspect.signature(cls).parameters
+                for unknown in (name for name in named if known and name not in known):
+                    raise TypeError(f"{cls.__name__}() takes no argument {unknown!r}{meant(unknown, known)}") from None
+                raise
+
+        @property
+        def __signature__(cls):
+            first, *others = inspect.signature(cls.__init__).parameters.values()
+            return inspect.Signature(others)
+
+
+class Named(metaclass=Spelled):
     """An object whose misspelt attributes are answered with the nearest one."""
 
     if not TYPE_CHECKING:  # where it would hide misspelt names

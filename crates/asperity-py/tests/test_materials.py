@@ -491,3 +491,15 @@ def test_terms_the_wrong_way_round_are_told(recwarn):
     asp.Prony(instantaneous=1e9, terms=[(0.5, 1e6)], poisson=0.38)
     asp.Creep(instantaneous=1e-9, terms=[(1e-3, 1.0)], poisson=0.38)
     assert not recwarn.list
+
+
+def test_points_that_are_no_numbers_are_named_and_columns_are_not():
+    f = np.geomspace(0.01, 100, 41)
+    storage, loss = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01)], poisson=0.5).storage_loss(2 * np.pi * f)
+    with pytest.raises(asp.CaseError, match=r"storage modulus of point 32 is nan, but must be a number \(10 of 41 are not finite\)"):
+        asp.fit_dma(f, np.where(f > 10, np.nan, storage), loss)
+    with pytest.raises(asp.CaseError, match="frequency of point 1 is inf"):
+        asp.fit_dma(np.r_[np.inf, f[1:]], storage, loss)
+    with pytest.raises(asp.CaseError, match="not greater than 0") as told:
+        asp.fit_dma(f, -storage, loss)
+    assert "columns=" not in str(told.value) and "name it" not in str(told.value)

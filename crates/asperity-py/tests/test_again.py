@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -89,20 +92,59 @@ def test_an_infinite_wavelength_goes_through_a_file(tmp_path) -> None:
     assert text == contact.methods() and again(text, tmp_path).approach[0] == pytest.approx(contact.approach, rel=1e-7)
 
 
-def test_a_file_is_named_and_arrays_are_remarked(tmp_path) -> None:
+def test_a_file_is_named(tmp_path) -> None:
     ROUGH.write(tmp_path / "rough.npz")
     read = asp.Surface.read(tmp_path / "rough.npz")
     result = asp.solve(read + BALL, PRONY, load=1e-3, times=[1.0])
     assert f"heights of a file (path {tmp_path}/rough.npz, level none)" in result.methods()
     assert np.array_equal(again(result.methods(), tmp_path).approach, result.approach)
-    other = asp.solve(np.array(BALL.heights), PRONY, size=SIZE, load=1e-3, times=[1.0], hardness=np.full((24, 24), 1e9))
-    text = other.methods()
-    assert "heights given as an array" in text and "# The heights were given as an array" in text and "# The hardness of each cell" in text
-    march = asp.march(2.0 * BALL, PRONY, load=1e-3, times=[1.0, 2.0])
+
+
+def changed_march() -> asp.Result:
+    march = asp.march(BALL, PRONY, load=1e-3, times=[1.0, 2.0])
     next(march)
     march.prescribe(load=asp.ramp_to(2e-3, duration=0.5))
-    text = march.result().methods()
-    assert "The heights went through: heights times 2" in text and "# From row 1 on was prescribed: load, ramp, from current, value 2 mN, duration 500 ms." in text
+    return march.result()
+
+
+#: Results whose case lacks something, and how it is named.
+LACKING: dict[str, tuple[Callable[[], asp.Result], str]] = {
+    "heights": (lambda: asp.solve(np.array(BALL.heights), PRONY, size=SIZE, load=1e-3, times=[1.0]), "The heights were given as an array"),
+    "hardness": (lambda: asp.solve(BALL, PRONY, load=1e-3, times=[1.0], hardness=np.full((24, 24), 1e9)), "The hardness of each cell was given as an array."),
+    "steps": (lambda: asp.solve(2.0 * BALL, PRONY, load=1e-3, times=[1.0]), "What was done to the heights: heights times 2."),
+    "prescribed": (changed_march, "From row 1 on was prescribed: load, ramp, from current, value 2 mN, duration 500 ms."),
+    "wear": (
+        lambda: asp.solve(BALL, STEEL, load=1e-3, times=[1.0], wear=asp.Wear(1e-15, velocity=0.1, map=np.ones((24, 24)))),
+        "The coefficients of [wear] were given as an array.",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LACKING)
+def test_a_case_that_lacks_something_does_not_run(name: str, tmp_path) -> None:
+    run, words = LACKING[name]
+    text = run().methods()
+    assert "The case but for what it leaves out" in text and f'"{words}' in text and "in full" not in text, text
+    with pytest.raises(asp.CaseError, match="left_out"):
+        again(text, tmp_path)
+
+
+def test_times_of_fields_are_rows_again(tmp_path) -> None:
+    result = asp.solve(BALL, PRONY, load=asp.ramp(1e-3, duration=1.0), times=asp.uniform(2.0, 4), field_times=[0.3, 1.1])
+    same = again(result.methods(), tmp_path)
+    assert 0.3 in same.time and np.array_equal(same.time, result.time) and np.array_equal(same.approach, result.approach)
+
+
+@pytest.mark.parametrize("given", [dict(load=[1e-3, 2e-3, 1.5e-3]), dict(pressure=[1e2, 1e3]), dict(approach=[1e-7])])
+def test_a_curve_runs_again(given: dict[str, list[float]], tmp_path) -> None:
+    curve = asp.elastic(BALL, 4e6, **given)
+    text = curve.methods()
+    assert ("was prescribed in 3 contacts, 1 mN to 1.5 mN." in text) == ("load" in given)
+    same = again(text, tmp_path)
+    # Each contact is solved to 1e-6 of the mean displacement, from another start in a case.
+    assert np.allclose(same.approach[: len(curve)], curve.approach, rtol=1e-5, atol=0.0)
+    assert np.allclose(same.load[: len(curve)], curve.load, rtol=1e-5, atol=0.0)
+    assert "The load is 2 mN." in asp.elastic(BALL, 4e6, load=2e-3).methods()
 
 
 def test_the_words_of_a_case_file_are_kept(tmp_path) -> None:
@@ -111,3 +153,59 @@ def test_the_words_of_a_case_file_are_kept(tmp_path) -> None:
     # The words are read from the case by Python's own reader of TOML, from 3.11 on.
     assert ("The surface is a sphere (radius 10 mm)" in text or sys.version_info < (3, 11)) and "[domain]" in text
     assert np.array_equal(again(text, tmp_path).approach, stored.approach)
+
+
+def measured(folder: Path, **given: object) -> asp.Surface:
+    """A tilted map with a spike and a hole, from a file."""
+    heights = np.array(ROUGH.heights) + np.linspace(0.0, 1e-6, 24)[:, None]
+    heights[3, 4], heights[10, 10] = np.nan, 1e-3
+    asp.Surface(heights, size=SIZE).write(folder / "measured.npz")
+    return asp.Surface.read(folder / "measured.npz", **given)
+
+
+#: What may be done to a map from a file.
+PREPARED: dict[str, Callable[[Path], asp.Surface]] = {
+    "read": lambda folder: measured(folder, level="quadratic", fill="nearest"),
+    "spikes": lambda folder: measured(folder).level("plane").outliers(6.0, radius=3).fill("harmonic", share=0.5).level("mean"),
+    "crop": lambda folder: measured(folder, fill="harmonic").crop(cells=(16, 12), start=(2, 3)).crop(size=(5e-4, 4e-4)).window("tukey", share=0.2),
+    "band": lambda folder: measured(folder, level="plane", fill="harmonic").mirrored().filter(shortest=1.5e-4, edge="gaussian").resample((36, 40)),
+    "turned": lambda folder: -measured(folder, level="plane", fill="harmonic").flip("y").rotate(1),
+    "words": lambda folder: measured(folder).process("fill method=harmonic", "level form=plane", "invert"),
+    "sum": lambda folder: measured(folder, fill="nearest").level("plane") + ROUGH,
+    "copy": lambda folder: copy.deepcopy(pickle.loads(pickle.dumps(measured(folder, fill="nearest").level("plane")))).flip("x"),
+}
+
+
+@pytest.mark.parametrize("name", PREPARED)
+def test_what_was_done_to_a_file_is_done_again(name: str, tmp_path) -> None:
+    surface = PREPARED[name](tmp_path)
+    result = asp.solve(surface, STEEL, pressure=1e4, times=[1.0], boundary="periodic", fields=[])
+    text = result.methods()
+    assert "case in full" in text and "The heights went through: " in text and "process" not in text.split("\n")[0]
+    assert np.array_equal(again(text, tmp_path).approach, result.approach)
+
+
+@pytest.mark.parametrize(
+    "change", [lambda s: 2.0 * s, lambda s: (2.0 * s).level("plane"), lambda s: s.process("level=plane"), lambda s: (s + s).level("plane"), lambda s: pickle.loads(pickle.dumps(3.0 * s))]
+)
+def test_what_a_file_cannot_say_is_left_out(change, tmp_path) -> None:
+    surface = change(measured(tmp_path, fill="nearest"))
+    text = asp.solve(surface, STEEL, pressure=1e4, times=[1.0], boundary="periodic", fields=[]).methods()
+    assert "What was done to the heights: " in text
+    with pytest.raises(asp.CaseError, match="left_out"):
+        again(text, tmp_path)
+
+
+def test_a_map_in_another_unit_and_order_is_read_again(tmp_path) -> None:
+    np.savetxt(tmp_path / "z.txt", 1e6 * ROUGH.heights)
+    given = dict(size=SIZE, height_unit="um")
+    surface = asp.Surface.read(tmp_path / "z.txt", **given, transpose=False)
+    assert np.array_equal(surface.heights, asp.Surface.read(tmp_path / "z.txt", size=SIZE, height_unit=1e-6, transpose=False).heights)
+    result = asp.solve(surface, STEEL, pressure=1e4, times=[1.0], boundary="periodic", fields=[])
+    assert 'height_unit = "um"' in result.methods() and np.array_equal(again(result.methods(), tmp_path).approach, result.approach)
+    turned = asp.Surface.read(tmp_path / "z.txt", **given, transpose=True)
+    assert np.allclose(turned.heights, ROUGH.heights, rtol=1e-12)
+    told = asp.solve(turned, STEEL, pressure=1e4, times=[1.0], boundary="periodic", fields=[]).methods()
+    assert "What was done to the heights: transposed." in told
+    with pytest.raises(asp.CaseError, match="height_unit is in N"):
+        asp.Surface.read(tmp_path / "z.txt", size=SIZE, height_unit="N")

@@ -66,3 +66,12 @@ def test_a_profile_as_an_array_is_resampled_too() -> None:
     # Westergaard: mean pressure over that of full contact, pi E* d/L, is the square of the sine of half the contact.
     exact = 2 / np.pi * np.arcsin(np.sqrt(1e4 / (np.pi * 4e6 * 1e-6 / 1e-3))) * 1e-3
     assert abs(bars["contact_area"]["value"] - exact) < bars["contact_area"]["error"]
+
+
+def test_what_is_no_single_case_is_named() -> None:
+    with pytest.raises(asp.CaseError, match=r"ElasticCurve: give it one of its contacts"):
+        asp.converge(asp.elastic(BALL, 4e6, load=[1e-3, 2e-3]))
+    with pytest.raises(asp.CaseError, match=r"March: give it its result\(\)"):
+        asp.converge(asp.march(BALL, RUBBER, load=1e-3, times=[1.0]))
+    with pytest.raises(TypeError, match="no argument 'laod'; did you mean 'load'"):
+        asp.converge(dict(surface=BALL, material=RUBBER, laod=1e-3, times=[1.0]))

@@ -1,6 +1,7 @@
 """What a study reads from its folder: nothing that was computed with something else."""
 
 import importlib
+import os
 import subprocess
 import sys
 import textwrap
@@ -195,3 +196,70 @@ def test_a_wrong_case_is_an_error_at_once(tmp_path):
     with pytest.raises(asp.CaseError, match="no point can be solved: .*material is 3"):
         asp.study(dict(surface=ball, material=3, times=[1.0]), {"load": [1e-3, 2e-3]}, folder=tmp_path / "never")
     assert not list(tmp_path.glob("never/*.zarr"))
+
+
+HELPER = "FACTOR = 1.0\nCALLS = 0\n\n\ndef scale(load):\n    global CALLS\n    CALLS += 1\n    return FACTOR * load\n"
+
+
+@pytest.fixture()
+def helper(tmp_path, monkeypatch):
+    """A module of the user that was written before this program began."""
+    path = tmp_path / "a_helper_of_mine.py"
+    path.write_text(HELPER)
+    os.utime(path, (1e9, 1e9))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    importlib.invalidate_caches()
+    monkeypatch.delitem(sys.modules, "a_helper_of_mine", raising=False)
+    return importlib.import_module("a_helper_of_mine"), path
+
+
+def test_a_module_that_was_changed_in_memory_is_refused(helper, monkeypatch):
+    pytest.importorskip("xarray")
+    module, path = helper
+    ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=1e-2)
+
+    def pressed(load):
+        return asp.elastic(ball, 4e6, load=module.scale(load))
+
+    def study():
+        return asp.study(pressed, {"load": [1e-3]}, progress=False, workers=1)["load"].item()
+
+    # Another process reads the source, where a number that the module itself changes is no constant.
+    module.CALLS = 7
+    assert study() == pytest.approx(1e-3, rel=1e-12)
+    monkeypatch.setattr(module, "FACTOR", 2.0)
+    with pytest.raises(asp.CaseError, match="a_helper_of_mine.FACTOR is 2.0 here, but 1.0 in its source"):
+        study()
+    monkeypatch.undo()
+    monkeypatch.setattr(module, "scale", lambda load: 3 * load)
+    with pytest.raises(asp.CaseError, match="a_helper_of_mine.scale is a function of .* here"):
+        study()
+
+
+def test_a_module_that_was_edited_since_is_told(helper):
+    pytest.importorskip("xarray")
+    module, path = helper
+    path.write_text(HELPER.replace("1.0", "2.0"))
+    ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=1e-2)
+
+    def pressed(load):
+        return asp.elastic(ball, 4e6, load=module.scale(load)).to_result()
+
+    with pytest.warns(UserWarning, match="FACTOR is 1.0 here, but 2.0 in its source, which is what the processes of the study read"):
+        data = asp.study(pressed, {"load": [1e-3]}, progress=False, workers=1)
+    assert data["load"].item() == pytest.approx(2e-3, rel=1e-12)
+
+
+def test_the_environment_and_files_that_are_not_named_are_told(tmp_path, monkeypatch):
+    def of_environment():
+        return float(os.environ["ASPERITY_TEST_YOUNG"])
+
+    def of_file(name):
+        return np.loadtxt(f"{tmp_path}/{name}.txt")
+
+    walk = Walk()
+    walk.parts(of_environment)
+    assert walk.unknown == [f"the variables of the environment that {of_environment.__qualname__} reads"]
+    walk = Walk()
+    walk.parts(of_file)
+    assert walk.readers == {of_file.__qualname__} and not walk.files

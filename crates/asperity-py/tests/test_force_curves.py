@@ -95,9 +95,8 @@ def test_a_file_of_an_instrument_gives_curves(tmp_path):
         np.testing.assert_allclose(curve.depth, np.concatenate([depth[::-1], depth]), atol=1e-15)
         fit = asp.fit_indentation(None, curve.force, curve.depth, model="jkr", **SPHERE)
         assert fit.young[0] == pytest.approx(young, rel=1e-3)
-    for name, text in [("no.h5", None), ("bad.h5", "text"), ("curve.xyz", "text")]:
-        if text is not None:
-            (tmp_path / name).write_text(text)
+    for name in ["bad.h5", "curve.xyz"]:
+        (tmp_path / name).write_text("text")
         with pytest.raises(asp.CaseError, match=name):
             asp.read_force_curves(tmp_path / name)
 
@@ -205,5 +204,38 @@ def test_tips_of_other_shapes_give_the_modulus_back_in_maps_too():
         np.testing.assert_allclose(found.young[:, 0], [1e3, 2e3], rtol=1e-3)
     with pytest.raises(asp.CaseError, match="hertz"):
         asp.fit_indentation(None, pyramid, depth, poisson=0.5, model="jkr", indenter="pyramid", angle=0.35)
-    with pytest.raises(asp.CaseError, match="90 degrees"):
+    with pytest.raises(asp.CaseError, match="35 degrees are 0.610865 rad"):
         asp.fit_indentation(None, pyramid, depth, poisson=0.5, model="hertz", indenter="pyramid", angle=35.0)
+
+
+def test_the_columns_of_a_curve_are_of_one_length_and_in_si():
+    depth = np.linspace(0.0, 1e-6, 9)
+    for wrong in ((depth[1:], depth), (depth, depth, depth[1:]), (depth, depth[:, None])):
+        with pytest.raises(asp.CaseError, match="length|shape"):
+            asp.ForceCurve(*wrong)
+    with pytest.raises(asp.CaseError, match="one point at least"):
+        asp.ForceCurve([], [])
+    curve = asp.ForceCurve([1, 2, 3], [1.0, 2.0, 3.0])
+    assert curve.force.dtype == np.float64 and not curve.force.flags.writeable
+    with pytest.raises(AttributeError, match="did you mean 'depth'"):
+        curve.dpth
+    u = pytest.importorskip("pint", reason="pint is not installed").UnitRegistry()
+    curve = asp.ForceCurve(u.Quantity([1.0, 2.0], "nN"), u.Quantity([1.0, 2.0], "um"))
+    assert np.allclose(curve.force, [1e-9, 2e-9]) and np.allclose(curve.depth, [1e-6, 2e-6])
+
+
+def test_a_file_that_is_not_there_is_an_os_error():
+    pytest.importorskip("afmformats")
+    with pytest.raises(FileNotFoundError, match="none.jpk"):
+        asp.read_force_curves("none.jpk")
+
+
+def test_nanometres_are_no_metres(recwarn):
+    depth = np.linspace(0.0, 1e-6, 40)[::-1]
+    load = 4 / 3 * 1e6 / 0.75 * np.sqrt(RADIUS) * depth**1.5
+    asp.fit_indentation(None, load, depth, radius=RADIUS, indenter="paraboloid", poisson=0.5, model="hertz")
+    assert not recwarn.list
+    with pytest.warns(asp.ResultWarning, match="the depth is up to 1000 m: lengths are in m and loads in N"):
+        asp.fit_indentation(None, load, 1e9 * depth, radius=RADIUS, indenter="paraboloid", poisson=0.5, model="hertz")
+    with pytest.warns(asp.ResultWarning, match="the radius is 10 m"):
+        asp.fit_indentation(None, load, depth, radius=10.0, indenter="paraboloid", poisson=0.5, model="hertz")

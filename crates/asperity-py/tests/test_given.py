@@ -230,3 +230,53 @@ def test_a_case_that_holds_itself_is_refused():
     for given in [case, {"load": {"stages": stages}}]:
         with pytest.raises(asp.CaseError, match="deep"):
             asp.check(given)
+
+
+def test_points_are_a_table_wherever_a_history_is_taken(tmp_path):
+    ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)
+    given = dict(times=[0.5, 1.0], fields=[])
+    table = asp.solve(ball, ZENER, load=asp.table([(0.0, 0.0), (1.0, 1e-3)]), **given).load
+    for points in ([(0, 0), (1, 1e-3)], ((0.0, 0.0), [1.0, 1e-3]), np.array([[0.0, 0.0], [1.0, 1e-3]], dtype=">f4")):
+        assert np.allclose(asp.solve(ball, ZENER, load=points, **given).load, table, rtol=1e-6)
+    with pytest.raises(asp.CaseError, match="load is"):
+        asp.solve(ball, ZENER, load=[0.0, 1e-3], **given)
+
+
+def test_a_case_that_is_not_there_is_an_os_error(tmp_path):
+    pytest.importorskip("xarray")
+    for missing in (
+        lambda: asp.study("none.toml", over={"load.history.value": ["1 N"]}),
+        lambda: asp.study("none.toml", vary={"load.history.value": ["1 N"]}, directory=tmp_path),
+        lambda: asp.converge("none.toml"),
+        lambda: asp.check("none.toml"),
+    ):
+        with pytest.raises(FileNotFoundError, match="none.toml"):
+            missing()
+
+
+def test_an_angle_says_itself_how_many_quarter_turns_it_is():
+    u = pytest.importorskip("pint", reason="pint is not installed").UnitRegistry()
+    ball = asp.Surface(np.arange(12.0).reshape(3, 4) * 1e-9, size=(3e-3, 4e-3))
+    for angle, turns in ((90 * u.deg, 1), (np.pi * u.rad, 2), (-90 * u.deg, -1)):
+        assert ball.rotate(angle) == ball.rotate(turns)
+    with pytest.raises(asp.CaseError, match="whole number"):
+        ball.rotate(45 * u.deg)
+
+
+def test_a_case_takes_arrays_and_a_study_takes_columns(tmp_path):
+    keys = {
+        "domain": {"cells": np.array([8, 8]), "size": np.array([1e-3, 1e-3])},
+        "surface": [{"kind": "sphere", "radius": 1e-2}],
+        "body": [{"poisson": 0.5, "material": {"model": "elastic", "young": 1e6}}],
+        "load": {"control": "load", "history": {"kind": "table", "points": np.array([[0.0, 0.0], [1.0, 1e-3]])}},
+        "time": {"end": 1.0, "steps": 2},
+    }
+    result = asp.run(keys, output=tmp_path / "case.zarr", progress=False)
+    assert result.cells == (8, 8) and np.allclose(result.load, [0.0, 5e-4, 1e-3])
+    pandas = pytest.importorskip("pandas", reason="pandas is not installed")
+    pytest.importorskip("xarray")
+    ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)
+    loads = [1e-3, 2e-3]
+    for values in (pandas.Series(loads), iter(loads)):
+        data = asp.study(dict(surface=ball, material=ZENER, times=[1.0]), {"load": values}, progress=False, workers=1)
+        assert data["load_given"].values.tolist() == loads

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import warnings
+from typing import get_args
 
 import asperity as asp
 import numpy as np
 import pytest
+
+from asperity import _words
 
 CASE = """
 title = "seal"
@@ -155,3 +159,23 @@ def test_a_leak_through_a_windowed_surface_is_told(tmp_path):
     assert len(told(asp.Surface.read(tmp_path / "groove.npz") + groove)[1]) == 1
     open_, words = told(groove.mirrored())
     assert open_.percolates.values[-1] and open_.leak_resolved.values[-1] and words == []
+
+
+def test_words_of_gases_are_those_of_the_core() -> None:
+    leak = asp.leakage(np.full((8, 8), 1e-6), size=(1e-3, 1e-3), sides="closed")
+    with pytest.raises(asp.CaseError, match="did you mean 'helium'"):
+        leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas="helim")
+    with pytest.raises(asp.CaseError, match="did you mean 'slip'"):
+        leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas="helium", rarefaction="slp")
+    for name, words in (("gas", _words.Gas), ("rarefaction", _words.Rarefaction)):
+        with pytest.raises(asp.CaseError) as told:
+            leak._solved({"inlet": 2e5, "outlet": 1e5, "gas": "air", name: "none"})
+        assert set(re.findall("`([a-z]+)`", str(told.value))) == {"none", *get_args(words)}
+
+
+def test_a_line_has_no_leak_and_a_pressure_is_no_gap() -> None:
+    line = asp.solve(asp.Surface.cylinder(cells=32, size=1e-3, radius=1e-2), asp.Elastic(young=1e6, poisson=0.5), load=1.0, times=[1.0], fields=["pressure", "gap"])
+    with pytest.raises(asp.CaseError, match="through a line contact nothing flows"):
+        line.leakage()
+    with pytest.warns(asp.ResultWarning, match=r"the gap is up to 1e\+05 m wide on a domain of 0.001 m"):
+        asp.leakage(np.full((8, 8), 1e5), np.full((8, 8), False), size=(1e-3, 1e-3), sides="closed")

@@ -477,3 +477,41 @@ def test_materials_tell_their_parameters_and_functions_in_short():
     assert float(voigt.creep(2.0)) == pytest.approx((1 - math.exp(-1)) / 1e6, rel=1e-12)
     assert float(voigt.storage(3.0)) == pytest.approx(1e6, rel=1e-12) and float(voigt.loss(3.0)) == pytest.approx(6e6, rel=1e-12)
     assert voigt.relaxation([0.0, 1.0]).tolist() == [1e6, 1e6]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        lambda: asp.Springpot(shear=1e6, time=1.0, order=0.5, poisson=0.5), lambda: asp.PowerLaw(young=1e3, alpha=0.2, poisson=0.5),
+        lambda: asp.FractionalMaxwell(shear=1e6, time=1.0, order=0.5, poisson=0.5),
+        lambda: asp.FractionalZener(shear_equilibrium=1e6, shear_instantaneous=1e8, time=1.0, order=0.5, poisson=0.5),
+    ],
+)
+def test_a_fractional_model_asks_for_its_window(made):
+    with pytest.raises(asp.CaseError, match=r"needs window=\(first, last\)"):
+        made()
+
+
+def test_terms_the_wrong_way_round_are_told(recwarn):
+    with pytest.warns(asp.ResultWarning, match=r"terms are \(modulus \[Pa\], time \[s\]\): the first has the modulus 8.93 Pa and the time 2.54776e\+08 s"):
+        asp.Prony(equilibrium=1973e6, terms=[(time, modulus) for modulus, time in PMMA["terms"]], poisson=0.38)
+    with pytest.warns(asp.ResultWarning, match="compliance 10 1/Pa and the time 1e-07 s"):
+        asp.Creep(instantaneous=1e-9, terms=[(10.0, 1e-7)], poisson=0.38)
+    recwarn.clear()
+    asp.Prony(**PMMA, poisson=0.38)
+    asp.Prony(equilibrium=100.0, terms=[(50.0, 1e4), (20.0, 1.0)], poisson=0.5)  # a soft gel
+    asp.Prony(instantaneous=1e9, terms=[(0.5, 1e6)], poisson=0.38)
+    asp.Creep(instantaneous=1e-9, terms=[(1e-3, 1.0)], poisson=0.38)
+    assert not recwarn.list
+
+
+def test_points_that_are_no_numbers_are_named_and_columns_are_not():
+    f = np.geomspace(0.01, 100, 41)
+    storage, loss = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01)], poisson=0.5).storage_loss(2 * np.pi * f)
+    with pytest.raises(asp.CaseError, match=r"storage modulus of point 32 is nan, but must be a number \(10 of 41 are not finite\)"):
+        asp.fit_dma(f, np.where(f > 10, np.nan, storage), loss)
+    with pytest.raises(asp.CaseError, match="frequency of point 1 is inf"):
+        asp.fit_dma(np.r_[np.inf, f[1:]], storage, loss)
+    with pytest.raises(asp.CaseError, match="not greater than 0") as told:
+        asp.fit_dma(f, -storage, loss)
+    assert "columns=" not in str(told.value) and "name it" not in str(told.value)

@@ -89,3 +89,37 @@ def test_friction_and_leaks_are_drawn():
     with pytest.raises(TypeError, match=r"leak draws into two axes"):
         pressed.plot.leak(leaks, ax=plt.gca())
     plt.close("all")
+
+
+def test_leaks_and_stresses_tell_how_they_were_computed():
+    contact = asp.elastic(BALL, 4e6, load=1e-3)
+    text = asp.leakage(contact, direction="y", smallest_gap=1e-8).methods(bibtex=True)
+    for words in ("The flow along y", "24 x 24 cells of 1 mm x 1 mm with closed sides", "nor do gaps below 10 nm", "The hydraulic gap is", "@software"):
+        assert words in text, (words, text)
+    tight = asp.leakage(np.full((4, 4), 1e-6), np.eye(4)[::-1] + np.eye(4) + np.eye(4, k=1) + np.eye(4, k=-1), size=(1e-3, 1e-3), sides="closed")
+    assert ("The seal is tight." in tight.methods()) == (not tight.percolates)
+    below = asp.stress(contact, poisson=0.3, depths=[0.0, 1e-4])
+    assert "from the pressure on 24 x 24 cells of a free surface of 1 mm x 1 mm, with the Poisson's ratio 0.3, at 2 depths from 0 m to 100 µm." in below.methods()
+    pressed = asp.stress(contact.pressure, size=(1e-3, 1e-3), poisson=0.5, boundary="periodic", tractions=[contact.pressure, contact.pressure], depths=1e-4)
+    assert "the pressure and the tangential tractions on 24 x 24 cells of a periodic domain" in pressed.methods() and "at the depth 100 µm" in pressed.methods()
+
+
+def test_fits_tell_what_was_fitted():
+    rubber = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01), (2e6, 1.0)], poisson=0.5)
+    f = np.geomspace(0.01, 100, 41)
+    text = asp.fit_dma(f, *rubber.storage_loss(2 * np.pi * f)).methods()
+    for words in ("A Prony series with 2 terms", "41 points of the storage and loss modulus (Young's)", "from 0.06283 rad/s to 628.3 rad/s", "(5e+06 Pa, 0.01 s), (2e+06 Pa, 1 s)"):
+        assert words in text, (words, text)
+    creep = asp.fit_creep(f, rubber.creep_compliance(f), modulus="shear").methods()
+    assert "A creep series with 2 terms" in creep and "creep compliance (shear)" in creep and "1/Pa" in creep
+    depth = np.linspace(1e-6, -2e-7, 100)
+    force = np.where(depth > 0, 4 / 3 * 2e4 / 0.75 * np.sqrt(5e-6) * np.maximum(depth, 0.0) ** 1.5 - 2 * np.pi * 5e-6 * 1e-4, 0.0)
+    pulled = asp.fit_indentation(None, force, depth, radius=5e-6, poisson=0.5, model="dmt", range=1e-8)
+    assert "(DMT) was fitted" in pulled.methods() and "Young's modulus 2e+04 Pa (95 %" in pulled.methods() and "the work of adhesion 0.0001 J/m2" in pulled.methods()
+    t = np.linspace(0.0, 20.0, 101)
+    zener = asp.Zener(young=2e6, young_kelvin=2e6, retardation_time=4.0, poisson=0.5)
+    record = t, np.ones_like(t), (9 / 16 / 0.01 * zener.contact_compliance(t) ** 2) ** (1 / 3)
+    pressed = asp.fit_indentation(*record, radius=0.01, poisson=0.5, given="load").methods()
+    assert "A Prony series with 1 term was fitted" in pressed and "whose load was controlled" in pressed and "tau_1 2" in pressed
+    power = asp.fit_indentation(*record, radius=0.01, poisson=0.5, given="load", model="power-law", max_misfit=1.0).methods(bibtex=True)
+    assert power.startswith("A power law was fitted") and "@software" in power

@@ -159,3 +159,44 @@ def test_a_single_shape_that_meets_its_own_track_is_told() -> None:
             warnings.simplefilter("ignore", asp.ResultWarning)
             found = asp.steady(surface, rubber, load=1e-3, velocities=[0.1], boundary="periodic")
         assert ("own-track" in [finding["code"] for finding in found.findings]) is told
+
+
+@pytest.mark.parametrize("angle", [30, -90.0, 7, np.int64(45)])
+def test_degrees_are_no_radians(angle) -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    with pytest.raises(asp.CaseError, match=r"direction is .* rad, more than a whole turn: .* degrees are .* rad"):
+        asp.steady(wave, zener(2.0), pressure=2e4, velocities=[0.01], boundary="periodic", direction=angle)
+
+
+def test_a_sweep_has_stress_and_leak_of_each_velocity() -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    sweep = asp.steady(wave, asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5), pressure=2e3, velocities=[0.01, 0.1], boundary="periodic", fields=["pressure", "gap"])
+    below = sweep.stress(velocity=0.01, depths=[1e-4])
+    # A wave of pressure decays as (1 + q z) exp(-q z) with the depth.
+    q = 2.0 * np.pi / 1e-3
+    spectrum = np.fft.fft(sweep.field("pressure", velocity=0.01)[:, 0]) * (1 + q * 1e-4 * np.minimum(np.arange(32), 32 - np.arange(32)))
+    spectrum *= np.exp(-q * 1e-4 * np.minimum(np.arange(32), 32 - np.arange(32)))
+    exact = -np.fft.ifft(spectrum).real
+    assert np.allclose(below.zz[0][:, 0], exact, rtol=0.0, atol=1e-9 * abs(exact).max())
+    pytest.importorskip("xarray")
+    whole = sweep.leakage(direction="y")
+    one = sweep.leakage(direction="y", velocity=0.1)
+    assert one.leak_time.values.tolist() == [0.1] and one.hydraulic_gap.item() == whole.hydraulic_gap.values[1]
+    with pytest.raises(asp.CaseError, match="velocity= is for a sweep"):
+        sweep.stress(time=1.0)
+    for course in ([(1e-3, 1e3), (1.0, 1e4)], {"peak": 1e4}):
+        with pytest.raises(asp.CaseError, match="shear_stress is one number"):
+            asp.rubber_friction(sweep, shear_stress=course)
+
+
+def test_the_stress_of_a_contact_in_motion_leaves_its_friction_out(recwarn) -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    given = dict(pressure=2e4, velocities=[0.01], boundary="periodic")
+    bare = asp.steady(wave, rubber, **given)
+    recwarn.clear()
+    plain = bare.stress(depths=[1e-5])
+    assert not recwarn.list
+    rubbed = asp.steady(wave, rubber, **given, shear_stress=1e4)
+    with pytest.warns(UserWarning, match="the friction of the surfaces in motion is not in it"):
+        assert np.array_equal(rubbed.stress(depths=[1e-5]).mises, plain.mises)

@@ -403,3 +403,41 @@ def test_profiles_share_the_units_of_their_axes(ball, rough):
     large = asp.Surface.sphere(cells=(16, 16), size=(0.1, 0.1), radius=1.0)
     asp.solve(large, asp.Elastic(young=1e6, poisson=0.5), load=1.0, times=[1.0]).plot.profile(ax=ax, label="large")
     assert ax.get_xlabel() == "x [mm]" and ax.lines[1].get_xdata()[-1] > 90.0
+
+
+def test_friction_and_wear_are_drawn():
+    ball = asp.Surface.sphere(cells=(32, 32), size=(0.6e-3, 0.6e-3), radius=10e-3)
+    steel = asp.Elastic(young=70e9, poisson=0.22)
+    pull = asp.tangential(force=asp.table([(0, 0), (1, 2.0), (3, -2.0)]))
+    fields = ["pressure", "contact", "traction_x", "slip_x"]
+    rubbed = asp.solve(ball, [steel, steel], load=10.0, times=asp.uniform(3.0, 6), friction=0.3, tangential=pull, fields=fields, wear=1e-13)
+    # A slipping cell has a colour and a name of its own.
+    states = rubbed.plot.contact(time=1.0)
+    assert [text.get_text() for text in states.get_legend().get_texts()] == ["open", "contact", "slips"]
+    image = states.images[0]
+    slipping, sticking = (image.to_rgba(number)[:3] for number in (3, 1))
+    assert image.get_clim() == (0, 3) and slipping != sticking != image.to_rgba(2)[:3] != slipping
+    assert 3 in rubbed.field("contact", time=1.0)
+    drawn = rubbed.plot.field("traction_x", time=3.0)
+    assert np.array_equal(drawn.images[0].get_array(), rubbed.field("traction_x", time=3.0).T) and drawn.get_title() == "t = 3 s"
+    assert drawn.figure.axes[1].get_ylabel() == "traction x [MPa]"
+    half = rubbed.plot.field("traction_x", time=1.5).images[0]
+    assert half.get_clim()[0] == -half.get_clim()[1] < 0, "numbers of both signs have 0 in the middle"
+    loop = rubbed.plot.tangential_loop(color="k").lines[0]
+    assert np.allclose(loop.get_ydata(), rubbed.tangential_force[:, 0]) and np.allclose(loop.get_xdata(), 1e9 * rubbed.tangential_displacement[:, 0])
+    axes = rubbed.plot.wear(label="run")
+    assert axes.shape == (2, 2) and np.argmax(axes[0, 0].lines[0].get_ydata()) == 6
+    assert {"wear()", "tangential_loop()"} <= set(repr(rubbed.plot).strip("<>").replace(",", "").split()) and "friction()" not in repr(rubbed.plot)
+    with pytest.raises(asp.CaseError, match="was not kept"):
+        rubbed.plot.field("displacement")
+    plain = asp.solve(ball, steel, load=1.0, times=[1.0])
+    for missing in (plain.plot.wear, plain.plot.tangential_loop):
+        with pytest.raises(AttributeError, match="the result has no"):
+            missing()
+    # Of a line the names stand at the axis.
+    line = asp.solve(
+        asp.Surface.cylinder(cells=64, size=1e-3, radius=1e-2), [steel, steel], load=1e4, boundary="periodic", times=asp.uniform(1.0, 2), friction=0.3,
+        tangential=asp.tangential(force=asp.ramp(2e3, duration=1.0)),
+    )
+    assert [text.get_text() for text in line.plot.contact().get_yticklabels()] == ["open", "contact", "at hardness", "slips"]
+    assert line.plot.field("traction_x").get_ylabel() == "traction x [MPa]"

@@ -285,3 +285,15 @@ def test_a_histogram_that_ends_too_low_says_what_it_leaves_out():
     assert not [one for one in solve(largest_pressure=1e10).findings if one.code == "beyond-histogram"]
     with pytest.raises(asp.CaseError, match="largest_pressure"):
         asp.solve(sphere, body, load=0.5, times=[1.0], quantities=["pressure_histogram"])
+
+
+def test_cycles_of_another_frequency_are_told(recwarn):
+    punch = asp.Surface.flat_punch(cells=(16, 16), size=(1e-3, 1e-3), radius=0.3e-3)
+    load = asp.sine(mean=0.02, amplitude=0.01, frequency=0.2)
+    result = asp.solve(punch, asp.Elastic(young=1e6, poisson=0.5), load=load, times=asp.uniform(10.0, 80), fields=[])
+    recwarn.clear()
+    assert len(result.cycles(0.2)) == 2 and not recwarn.list
+    with pytest.warns(asp.ResultWarning, match=r"cycles of 1.25664 Hz are asked for, but what was prescribed is a sine of 0.2 Hz; an angular frequency"):
+        result.cycles(2 * np.pi * 0.2)
+    with pytest.warns(asp.ResultWarning, match="cycles of 0.4 Hz are asked for, but what was prescribed is a sine of 0.2 Hz$"):
+        result.cycles(0.4)

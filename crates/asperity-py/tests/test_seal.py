@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import asperity as asp
+from asperity._given import change
 
 #: Valleys along the flow on a body of E* = 1 MPa: the pressure 31.4 kPa closes them.
 CASE = {
@@ -35,6 +36,8 @@ def test_a_seal_has_the_numbers_of_the_command(tmp_path):
     assert (seal.states, seal.inlet, seal.outlet) == (["leaks"], 10e3, 0)
     assert seal.fluid_pressure.shape == (1, seal.x.size) and (np.diff(seal.fluid_pressure) <= 0).all()
     assert "leaks" in repr(seal) and any(found.code == "seal-never-tight" for found in seal.findings)
+    again = asp.seal(seal.methods().split("SI units:\n\n")[1], directory=tmp_path / "again", progress=False)
+    assert again.answer == seal.answer
     data = seal.to_xarray()
     # A patch that is tight nowhere needs no pressures where it closes, a quarter of the eight; up to eight are added until the leak stands.
     assert 6 <= data.sizes["pressure"] <= 14 and dict(data.sizes, pressure=6) == {"inlet": 24, "time": 2, "x": 400, "seed": 1, "pressure": 6}
@@ -68,7 +71,7 @@ def test_another_length_and_pressure_take_the_same_runs_and_a_lifted_seal_has_no
 def test_what_is_wrong_is_told():
     with pytest.raises(asp.CaseError, match="directory="):
         asp.seal(CASE)
-    with pytest.raises(asp.CaseError, match="cannot be read"):
+    with pytest.raises(FileNotFoundError, match="none.toml"):
         asp.seal("none.toml")
 
 
@@ -86,3 +89,34 @@ def test_one_patch_leaks_as_several_in_series_within_the_scatter_of_the_seeds():
             leaks.append(asp.leakage(gap, contact=touches, size=(times * size, size), sides="periodic").hydraulic_gap ** 3)
     assert (np.array(four) <= np.array(one) * (1 + 1e-9)).all()
     assert abs(np.mean(four) / np.mean(one) - 1) < np.std(one, ddof=1) / np.mean(one)
+
+
+def test_the_methods_of_a_seal_name_what_was_changed(tmp_path):
+    pytest.importorskip("tomllib", reason="Python before 3.11 reads no TOML")
+    short = {**CASE, "domain": {**CASE["domain"], "cells": [2, 16]}}
+    changes = {"seal.length": "0.2 m", "solver.tolerance": 1e-7, "surface.0.amplitude": "0.12 um"}
+    text = asp.seal(short, directory=tmp_path / "short", progress=False, set=changes).methods(bibtex=True)
+    for words in (
+        "a patch of 2 x 16 cells on 0.3125 um x 10 um",
+        "a wave (amplitude 0.12 um, wavelength [inf, 10 um])",
+        "has the profile hertz (length 0.2 m, peak 20 kPa, pressures 8, width 1 mm)",
+        "body 1: young 0.75 MPa, Poisson's ratio 0.5",
+        "pressure drop 10 kPa, viscosity 1 mPa s",
+        "the liquid flows from 10 kPa to 0 Pa",
+        'length = "0.2 m"',
+        "tolerance = 0.0000001",
+        "case in full",
+        "@software",
+    ):
+        assert words in text, (words, text)
+
+
+def test_changes_find_their_place_in_a_case():
+    pytest.importorskip("tomllib", reason="Python before 3.11 reads no TOML")
+    case = {"surface": [{"kind": "sphere"}], "load": {"control": "load"}, "title": "a"}
+    words = ["surface[0].radius=1 mm", "surface.0.center=[0, 1]", "load.history.value=0.1", "time.end=2 s", "title.x=1", "surface.3.radius=1 mm"]
+    assert change(case, words) == ["title.x=1", "surface.3.radius=1 mm"]
+    assert case == {
+        "surface": [{"kind": "sphere", "radius": "1 mm", "center": [0, 1]}],
+        "load": {"control": "load", "history": {"value": 0.1}}, "time": {"end": "2 s"}, "title": "a",
+    }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import subprocess
 import sys
 import textwrap
@@ -107,3 +108,46 @@ def test_the_warnings_of_a_loop_collapse(tmp_path) -> None:
     assert told.count("[few-contact-cells]") == 3 and told.count("are not shown") >= 1, told
     every = subprocess.run([sys.executable, "-W", "always", script], capture_output=True, text=True, check=True).stderr
     assert every.count("[few-contact-cells]") == 6
+
+
+def test_every_public_object_proposes_the_nearest_attribute() -> None:
+    t = np.geomspace(0.1, 10.0, 20)
+    contact = asp.elastic(BALL, 1e6, load=[1e-3, 2e-3])
+    made = [
+        asp.fit_relaxation(t, 1e6 + 1e6 * np.exp(-t), poisson=0.5), asp.wlf(c1=8.86, c2=101.6, reference=293.15), asp.step(1.0), asp.uniform(1.0, 2),
+        asp.Adhesion(work=0.1, range=1e-6), asp.Friction(0.3), asp.Wear(1e-15), asp.Flash(0.2, 1e-7, friction=0.3), asp.tangential(force=1.0), asp.Stage(load=1.0, duration=1.0),
+        asp.Body(layers=[asp.Layer(thickness=1e-4, material=RUBBER)]), asp.Layer(thickness=1e-4, material=RUBBER), asp.Fluid(inlet=2e5, outlet=1e5, gas="air"),
+        contact, contact[0], contact[0].to_result(), asp.leakage(contact[0]), asp.stress(contact[0], poisson=0.3), asp.march(BALL, RUBBER, load=1e-3, times=[1.0]),
+        asp.ForceCurve([1.0, 2.0], [1.0, 2.0]), BALL, RUBBER,
+    ]
+    for held in made:
+        name = next(one for one in dir(held) if one[0] != "_" and len(one) > 4)
+        with pytest.raises(AttributeError, match=f"did you mean '{name}'"):
+            getattr(held, name + "_")
+
+
+def test_options_of_a_table_are_written_as_python_writes_them() -> None:
+    assert in_python('leakage.coupling = "two-way" computes it') == 'fluid=asperity.Fluid(..., coupling="two-way") computes it'
+    assert in_python('friction.coupling = "full" computes it') == 'friction=asperity.Friction(..., coupling="full") computes it'
+    assert in_python("adhesion.allow_unresolved = true") == "adhesion=asperity.Adhesion(..., allow_unresolved=True)"
+
+
+def test_the_nearest_argument_of_a_class_is_proposed() -> None:
+    for made, wrong, right in (
+        (lambda: asp.Zener(shear=1e6, shear_kelvin=1e6, retardation=1.0, poisson=0.5), "retardation", "retardation_time"),
+        (lambda: asp.Adhesion(work=0.1, rnge=1e-6), "rnge", "range"), (lambda: asp.Wear(1e-15, velocty=0.1), "velocty", "velocity"),
+        (lambda: asp.Stage(laod=1.0), "laod", "load"), (lambda: asp.Surface(np.zeros((2, 2)), sise=(1.0, 1.0)), "sise", "size"),
+    ):
+        with pytest.raises(TypeError, match=rf"\(\) takes no argument '{wrong}'; did you mean '{right}'"):
+            made()
+    # What a class takes, and errors from within, stay as they are.
+    assert list(inspect.signature(asp.Wear).parameters)[:2] == ["coefficient", "velocity"]
+    with pytest.raises(TypeError, match="missing 1 required positional argument"):
+        asp.Wear()
+
+    class Own(asp.Wear):
+        def __post_init__(self) -> None:
+            raise TypeError("of its own")
+
+    with pytest.raises(TypeError, match="of its own"):
+        Own(1e-15)

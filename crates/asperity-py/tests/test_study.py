@@ -292,7 +292,8 @@ def test_a_case_that_is_not_there_and_keys_that_are_not(tmp_path, case):
         asp.study(tmp_path / "none.toml", {"load.history.value": ["1 N"]})
     with pytest.raises(asp.CaseError, match="histori"):
         asp.study(case, {"load.histori.value": ["1 N"]})
-    data = asp.study(case, {"load.history.value": ["-1 N"]})
+    with pytest.warns(asp.ResultWarning, match=r"1 of 1 points failed; the first, load.history.value = -1 N: .*load"):
+        data = asp.study(case, {"load.history.value": ["-1 N"]})
     assert data.status.item() == "failed" and "load" in data.error.item()
 
 

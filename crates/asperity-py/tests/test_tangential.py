@@ -132,3 +132,31 @@ def test_studies_keep_both_components():
     pytest.importorskip("xarray")
     made = asp.study(held, {"peak": [1.0, 2.0]})
     assert made.tangential_force.dims[-1] == "axis" and made.sizes["axis"] == 2
+
+
+def test_a_pair_a_function_and_points_are_courses():
+    given = dict(load=10.0, times=asp.uniform(1.0, 2), friction=0.3)
+
+    def force(course):
+        return asp.solve(ball(), [STEEL, STEEL], tangential=asp.tangential(force=course), **given).tangential_force
+
+    assert np.allclose(force(np.array([1.0, 0.5])), [[1.0, 0.5]] * 3, rtol=1e-12)
+    # Rounding of y, which is held at 0.
+    ramp = force(asp.ramp(1.0, duration=1.0))
+    for same in (lambda t: t, [(0, 0), (1, 1)], np.array([[0.0, 0.0], [1.0, 1.0]])):
+        assert np.allclose(force(same), ramp, rtol=1e-12, atol=1e-15)
+    both = force((lambda t: t, 0.5 * np.float32(1.0)))
+    assert np.allclose(both, [[0.0, 0.5], [0.5, 0.5], [1.0, 0.5]], rtol=1e-12, atol=1e-15)
+    told = asp.solve(ball(), [STEEL, STEEL], tangential=asp.tangential(force=lambda t: t * t), **given).methods(case=False)
+    assert "The tangential force is prescribed along x (table, " in told and "The force along x is a function of time, taken at" in told
+    # Breaks belong to whatever is a function.
+    broken = asp.solve(ball(), [STEEL, STEEL], tangential=asp.tangential(force=lambda t: max(0.0, t - 0.3)), breaks=[0.3], **given)
+    assert broken.time.tolist() == [0.0, 0.3, 0.5, 1.0]
+
+
+def test_forces_carry_units():
+    u = pytest.importorskip("pint", reason="pint is not installed").UnitRegistry()
+    given = dict(load=10.0, times=[1.0], friction=0.3)
+    for pair in ((1 * u.N, 500 * u.mN), u.Quantity([1.0, 0.5], "N"), [1 * u.N, 0.5]):
+        result = asp.solve(ball(), [STEEL, STEEL], tangential=asp.tangential(force=pair), **given)
+        assert np.allclose(result.tangential_force[-1], [1.0, 0.5], rtol=1e-12)

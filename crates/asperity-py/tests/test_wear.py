@@ -52,3 +52,22 @@ def test_a_number_is_a_coefficient_and_a_map_is_a_factor():
 def test_what_cannot_be_is_refused(wear, message):
     with pytest.raises(asp.CaseError, match=message):
         asp.solve(ball(), STEEL, load=10.0, times=[1.0], wear=wear())
+
+
+def test_a_velocity_with_a_unit_is_a_plain_number():
+    u = pytest.importorskip("pint", reason="pint is not installed").UnitRegistry()
+    assert asp.Wear(1e-15, velocity=100 * u.mm / u.s) == asp.Wear(1e-15, velocity=0.1)
+    with pytest.raises(asp.CaseError, match="velocity is in meter"):
+        asp.Wear(1e-15, velocity=1 * u.m)
+    told = asp.solve(ball(), STEEL, load=1.0, times=[1.0], wear=asp.Wear(1e-15, velocity=0.1)).methods(case=False)
+    assert "The velocity of the wear is prescribed (step, value 100 mm/s)." in told
+
+
+def test_numbers_in_other_units_are_told(recwarn):
+    asp.Wear((1e-15, 1e-11), velocity=0.1)
+    asp.Flash((0.2, 400.0), (1e-7, 1e-3), friction=0.3)
+    assert not recwarn.list
+    with pytest.warns(asp.ResultWarning, match=r"the coefficient of wear is 1e-06 m2/N"):
+        asp.Wear((1e-15, 1e-6), velocity=0.1)
+    with pytest.warns(asp.ResultWarning, match=r"the diffusivity is 0.2 m2/s, .*: the conductivity"):
+        asp.Flash(1e-7, 0.2, friction=0.3)

@@ -69,6 +69,10 @@ def meant(word: Any, words: Iterable[str], alike: float = 0.6) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
+class NotThere(FileNotFoundError, CaseError):
+    """A file that is not there: an OSError, and an argument that is wrong."""
+
+
 def path_of(what: str, given: Any) -> str | None:
     """A path as text; None where none is given."""
     if given is not None and not isinstance(given, (str, os.PathLike)):
@@ -98,8 +102,13 @@ def in_hertz(what: str, value: Any) -> float:
 
 
 def angle(what: str, value: Any) -> float:
-    """An angle in rad; a quantity of pint, say, may be in degrees."""
-    return number(what, value, "rad") if has_unit(value) else number(what, value)
+    """An angle in rad; a quantity of pint, say, may be in degrees. A plain number beyond a whole turn is one in degrees, and refused."""
+    if has_unit(value):
+        return number(what, value, "rad")
+    found = number(what, value)
+    if abs(found) > 2.0 * np.pi * (1.0 + 1e-12):
+        raise CaseError(f"{what} is {found:g} rad, more than a whole turn: angles are in rad; {found:g} degrees are {np.radians(found):.6g} rad (numpy.radians)")
+    return found
 
 
 def direction_of(value: Any) -> str | float:

@@ -48,10 +48,7 @@ def answered(verb: str, case: Any, directory: Any, words: Sequence[str], quiet: 
 
 def _case_file(case: Any, directory: Any, what: str) -> str:
     """The file of a case; one that is given as text or keys is written into the folder of `what`."""
-    try:
-        path, text = source(case)
-    except FileNotFoundError as error:
-        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
+    path, text = source(case)
     if text is None:
         return path
     if directory is None:

@@ -24,7 +24,7 @@ from ._result import Result, attributes_of
 from ._rows import OF_CONTACT, ContactColumns, ContactNumbers
 from ._sealed import ReadOnlyArrays, Sealed
 from ._spoken import spoken
-from ._states import State, touching
+from ._states import NO_HALF_SPACE, State, touching
 from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
@@ -69,7 +69,7 @@ class _Planned:
 
     def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
         self.gap: Floats = frozen(surface.gap())
-        self.origin, self.history = surface._origin, surface.history
+        self.origin, self.history, self.since = surface._origin, surface.history, surface._since
         self.size, self.keys, self.kernel = surface.size, {"contact_modulus": modulus, **keys}, kernel
         # The array of the caller may change.
         self.hardness: Any = np.array(hardness) if isinstance(hardness, np.ndarray) else hardness
@@ -193,7 +193,8 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
 
     def _state(self) -> State:
         self._whole("its state")
-        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure))
+        other = None if self._planned.kernel is None else NO_HALF_SPACE
+        return State(self.size, self.boundary, self.gap, self.pressure, touching(self.pressure), no_stress=other)
 
     @property
     def _setup(self) -> dict[str, Any]:
@@ -201,7 +202,7 @@ class ElasticContact(OnGrid, ContactNumbers, Sealed):
         known = {"boundary": self.boundary, "contact_modulus": self.contact_modulus, "solver_method": self.method, "solver_tolerance": self.tolerance}
         of_cells = isinstance(self.hardness, np.ndarray)
         kernel = "half-space" if self._planned.kernel is None else "given"
-        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history}
+        told = {"hardness": None if of_cells else self.hardness, "hardness_of_cells": of_cells, "kernel": kernel, "steps": self._planned.history, "since": self._planned.since}
         return {**known, **told, **({} if kernel == "given" else {"given": in_json(self._case)})}
 
     @property
@@ -295,6 +296,14 @@ class ElasticCurve(ContactColumns, Sealed, Sequence[ElasticContact]):
     def __iter__(self) -> Iterator[ElasticContact]:
         return iter(self._contacts)
 
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
+        """A paragraph on what was computed, as :meth:`Result.methods`; the case of it has a row for each contact."""
+        return _result(self._contacts, False, self._control, self._prescribed).methods(bibtex=bibtex, case=case)
+
+    def to_result(self) -> Result:
+        """The contacts as the rows of a result, one each second, with the fields "pressure", "gap" and "displacement"."""
+        return _result(self._contacts, True, self._control, self._prescribed)
+
     def to_dataframe(self) -> pandas.DataFrame:
         """The numbers as pandas.DataFrame, a row for each contact."""
         return frame({name: np.array(self._column(name)) for name in OF_CONTACT})
@@ -344,19 +353,34 @@ def _checksum(values: Floats) -> int:
     return zlib.crc32(np.ascontiguousarray(values).data)
 
 
-def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
-    """Contacts as the rows of a result."""
+def _course(control: str, values: Sequence[float]) -> dict[str, Any]:
+    """The keys with which an elastic body goes through the contacts of a curve, one each second."""
+    if len(values) == 1:
+        return {"load": {"control": control, "history": {"kind": "step", "value": values[0]}}}
+    points = [[float(n), value] for n, value in enumerate(values)]
+    return {"load": {"control": control, "history": {"kind": "table", "points": points}}, "time": {"times": [time for time, _ in points[1:]]}}
+
+
+def _result(contacts: list[ElasticContact], with_fields: bool, control: str = "", values: Sequence[float] = ()) -> Result:
+    """Contacts as the rows of a result; those of a curve know what was prescribed."""
     first = contacts[0]
+    setup = first._setup
+    if values:
+        setup["curve"] = {"control": control, "first": values[0], "last": values[-1]}
+        setup["given"] = {**setup["given"], **_course(control, values)} if "given" in setup else None
     for contact in contacts:
         contact._whole("a result")
     names = ("pressure", "gap", "displacement") if with_fields else ()
+    table = {name: np.array([contact._row[name] for contact in contacts]) for name in ROW}
+    if values:
+        table["time"] = np.arange(len(contacts), dtype=np.float64)
     return Result(
-        table={name: np.array([contact._row[name] for contact in contacts]) for name in ROW},
+        table=table,
         fields={name: np.array([getattr(contact, name) for contact in contacts]) for name in names},
         field_steps=range(len(contacts)) if with_fields else [],
         initial_gap=first.initial_gap,
         size=first.size,
-        attributes=attributes_of("Elastic contact", "complete", first._setup, first.findings),
+        attributes=attributes_of("Elastic contact", "complete", setup, first.findings),
     )
 
 

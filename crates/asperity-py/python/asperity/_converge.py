@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 import tempfile
@@ -12,12 +13,13 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats, as_plane
-from ._contact import ElasticContact
+from ._contact import ElasticContact, ElasticCurve
 from ._core import CaseError
 from ._given import given
 from ._motion import slide, steady
 from ._result import Result
-from ._solve import Case, Changes, overrides, solve, source
+from ._declared import check_call
+from ._solve import Case, Changes, March, overrides, solve, source
 
 __all__ = ["ErrorBar", "converge"]
 
@@ -90,9 +92,13 @@ def converge(case: Case | Result | ElasticContact, *, set: Changes = None, refin
         text, keys = case.attributes.get("case"), None if case.attributes.get("case") else _of_result(case)
         # The command solves a case of its own.
         return _errors(text, set, refine) if keys is None else _of_keys(keys, case._setup.get("steps"), -case.initial_gap, case.size, set, refine)
+    if isinstance(case, (ElasticCurve, March)):
+        one = "one of its contacts, as in curve[-1]" if isinstance(case, ElasticCurve) else "its result(), or the arguments of solve"
+        raise CaseError(f"converge takes one case, but is given a {type(case).__name__}: give it {one}")
     if isinstance(case, Mapping) and "material" in case:
-        function = steady if "velocities" in case else slide if {"velocity", "path"} & case.keys() else solve
-        options: Any = getattr(function, "options")
+        function: Any = steady if "velocities" in case else slide if {"velocity", "path"} & case.keys() else solve
+        options = function.options
+        check_call(function.__name__, inspect.signature(function), (), case)
         problem = options(**case)
         shape, keys, _ = problem.parts()
         _check_arrays(keys)

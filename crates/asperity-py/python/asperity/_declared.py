@@ -18,6 +18,7 @@ from . import _words
 from ._arrays import choice, count, meant, number
 from ._core import CaseError
 from ._parameters import call
+from ._sealed import Named
 from ._units import bare
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def check(given: DataclassInstance) -> None:
             object.__setattr__(given, one.name, _CHECKS[kind](one.name, value))
 
 
-class Table:
+class Table(Named):
     """The base of frozen dataclasses whose fields are the keys of a table of the case."""
 
     __dataclass_fields__: ClassVar[dict[str, Any]]

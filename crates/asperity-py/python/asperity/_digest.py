@@ -6,6 +6,9 @@ them in turn, modules of the user by their source, installed packages by their v
 
 from __future__ import annotations
 
+import ast
+import collections
+import contextlib
 import dis
 import functools
 import hashlib
@@ -15,6 +18,7 @@ import importlib.util
 import os
 import sys
 import sysconfig
+import time
 import types
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
@@ -31,8 +35,13 @@ from ._surface import Surface
 _INSTALLED = [os.path.join(os.path.realpath(sysconfig.get_path(name)), "") for name in ("stdlib", "platstdlib", "purelib", "platlib")]
 #: Attributes of a class that say nothing about what it does.
 _OF_CLASSES = {"__dict__", "__weakref__", "__module__", "__doc__", "__firstlineno__", "__static_attributes__", "__annotations__", "__annotate__", "__annotate_func__"}
+#: When this program began.
+_STARTED = time.time()
 #: Names with which a function runs what its code does not show.
 _DYNAMIC = {"eval", "exec", "__import__", "import_module"}
+#: Names with which a function reads the environment, and files.
+_ENVIRONMENT = {"environ", "getenv"}
+_READERS = {"open", "loadtxt", "genfromtxt", "fromfile", "memmap", "read_csv", "read_text", "read_bytes", "open_dataset", "open_zarr", "read_file"}
 
 
 def digest(*values: Any) -> str:
@@ -54,8 +63,14 @@ class Walk:
     def __init__(self) -> None:
         #: What was reached whose content cannot be known, in words.
         self.unknown: list[str] = []
-        #: Files that a function names.
+        #: Files that a function names, and the names of functions that read others.
         self.files: set[str] = set()
+        self.readers: set[str] = set()
+        #: Names of modules that have another value here than their source gives them, which other processes read; and those where the
+        #: source was written while this program runs, so that it is perhaps the newer one.
+        self.changed: list[str] = []
+        self.older: list[str] = []
+        self._sources: dict[str, tuple[dict[str, str], set[str]]] = {}
         # By identity: the digest, or the place of one that is not done yet; and the values, so that none has the identity of another.
         self._done: dict[int, str] = {}
         self._held: list[Any] = []
@@ -129,10 +144,20 @@ class Walk:
         found = {name: self.parts(there[name]) for name in names if name in there and name != "__builtins__"}
         if dynamic := _DYNAMIC & set(names) - set(there):
             self.unknown.append(f"what {function.__qualname__} runs by {', '.join(sorted(dynamic))}")
-        modules = [there[name] for name in names if isinstance(there.get(name), types.ModuleType)]
+        if _ENVIRONMENT & set(names):
+            self.unknown.append(f"the variables of the environment that {function.__qualname__} reads")
+        if _READERS & set(names) and not self.files:
+            self.readers.add(function.__qualname__)
+        home = sys.modules.get(function.__module__ or "")
+        if home is not None and home.__name__ != "__main__" and _is_own(home):
+            self._compare(home, names)
+        cells = [cell.cell_contents for cell in function.__closure__ or () if _is_full(cell)]
+        modules = [held for held in (*(there.get(name) for name in names), *cells) if isinstance(held, types.ModuleType)]
         modules += [module for code in codes for module in self._imports(code, there)]
         for module in modules:
             found[module.__name__] = self.parts(module)
+            if _is_own(module):
+                self._compare(module, names)
             for name in names if _is_own(module) else ():
                 if name in vars(module):
                     held = vars(module)[name]
@@ -140,6 +165,22 @@ class Walk:
                     if isinstance(held, types.ModuleType) and held not in modules:
                         modules.append(held)
         return sorted(found.items())
+
+    def _compare(self, module: types.ModuleType, names: list[str]) -> None:
+        """Notes the names whose value was changed since the module was read: another process reads its source."""
+        file = str(module.__file__)
+        if file not in self._sources:
+            self._sources[file] = _written(file)
+        constants, functions = self._sources[file]
+        for name in names:
+            held, words = vars(module).get(name), ""
+            if name in constants and isinstance(held, (bool, int, float, str, tuple)) and repr(held) != constants[name]:
+                words = f"{module.__name__}.{name} is {held!r} here, but {constants[name]} in its source"
+            elif name in functions and isinstance(held, types.FunctionType) and held.__module__ != module.__name__:
+                words = f"{module.__name__}.{name} is a function of {held.__module__} here, but not in its source"
+            told = self.changed if os.path.getmtime(file) < _STARTED else self.older
+            if words and words not in told:
+                told.append(words)
 
     def _imports(self, code: types.CodeType, there: dict[str, Any]) -> Iterator[types.ModuleType]:
         """The modules that code imports itself."""
@@ -231,6 +272,34 @@ def _is_own(module: types.ModuleType) -> bool:
         return False
     place = os.path.realpath(file)
     return not any(place.startswith(folder) for folder in _INSTALLED) and not {"site-packages", "dist-packages"} & set(Path(place).parts)
+
+
+def _written(file: str) -> tuple[dict[str, str], set[str]]:
+    """What the source of a module binds once: constants, as text, and functions without decorators."""
+    try:
+        tree = ast.parse(Path(file).read_bytes())
+    except (OSError, SyntaxError, ValueError):  # compiled modules have no source
+        return {}, set()
+    bound = collections.Counter(name for node in ast.walk(tree) for name in _bound(node))
+    constants, functions = {}, set()
+    for node in tree.body:
+        if isinstance(node, ast.FunctionDef) and not node.decorator_list and bound[node.name] == 1:
+            functions.add(node.name)
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target] if isinstance(node, ast.AnnAssign) else []
+        if len(targets) != 1 or not isinstance(targets[0], ast.Name) or bound[targets[0].id] != 1:
+            continue
+        with contextlib.suppress(ValueError, TypeError, AttributeError):
+            constants[targets[0].id] = repr(ast.literal_eval(node.value))  # type: ignore[attr-defined]
+    return constants, functions
+
+
+def _bound(node: ast.AST) -> list[str]:
+    """The names that a part of a program gives a value."""
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return [(one.asname or one.name).partition(".")[0] for one in node.names]
+    if isinstance(node, ast.Name) and isinstance(node.ctx, (ast.Store, ast.Del)):
+        return [node.id]
+    return [node.name] if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)) else []
 
 
 @functools.lru_cache

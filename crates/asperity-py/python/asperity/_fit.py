@@ -11,6 +11,7 @@ import html
 import json
 import math
 import os
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from typing import Any, Literal
@@ -23,6 +24,7 @@ from ._core import CaseError
 from ._declared import arguments_of, check
 from ._findings import Finding, findings_of, warn
 from ._materials import _OF_BODY, Creep, Material, Prony
+from ._paragraphs import of_fit
 from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
@@ -135,6 +137,10 @@ class Fit(ReadOnlyArrays):
         """Points and fitted curves over reduced time or angular frequency, on logarithmic axes."""
         return fitted(self, ax)
 
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_fit(self, bibtex)
+
     def __repr__(self) -> str:
         first, last = self.window
         return (
@@ -225,6 +231,11 @@ class Points(Options):
         for label, curve in zip(_LABELS[kind], curves):
             if len(curve) != len(at):
                 raise CaseError(f"{label} has {len(curve)} values for {len(at)} points")
+        for label, column in (("frequency" if kind == "dma" else "time", at), *zip(_LABELS[kind], curves)):
+            if (wrong := np.flatnonzero(~np.isfinite(column))).size:
+                first = wrong[0]
+                more = f" ({wrong.size} of {len(column)} are not finite)" if wrong.size > 1 else ""
+                raise CaseError(f"{label} of point {first + 1} is {column[first]}, but must be a number{more}: leave such points out, as in values[numpy.isfinite(values)]")
         sweeps = _sweeps(at, curves, self.temperature)
         if len(sweeps) > 1 and self.shift is None:
             known = ", ".join(f"{kelvin:.2f} K" for kelvin, _, _ in sweeps[:20])
@@ -232,7 +243,12 @@ class Points(Options):
                 f"the data hold {len(sweeps)} temperatures ({known}); state how times depend on temperature: "
                 "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
             )
-        return self.fit_of(_core.fit(kind, sweeps, self.keys(kind)))
+        try:
+            return self.fit_of(_core.fit(kind, sweeps, self.keys(kind)))
+        except CaseError as error:
+            # Arrays have no columns to name.
+            error.args = (re.sub(r"; name it: .*", "", str(error)), *error.args[1:])
+            raise
 
 
 @dataclass(kw_only=True)

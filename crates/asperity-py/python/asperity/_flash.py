@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 
+import numpy as np
+
 from ._declared import Table
+from ._findings import warn_caller
 from ._words import Feedback, Partition
 
 
@@ -35,3 +38,9 @@ class Flash(Table):
     partition: Partition = "mean"
     heated_for: float | None = None
     feedback: Feedback = "none"
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        # That of diamond, the best of all, is 1e-3.
+        if (most := float(np.max(self.diffusivity))) > 1e-2:
+            warn_caller(f"the diffusivity is {most:g} m2/s, but no solid has more than 1e-3: the conductivity [W/(m K)] comes first [unlikely-unit]")

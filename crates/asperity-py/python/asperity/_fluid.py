@@ -7,7 +7,7 @@ from typing import Any
 
 from ._declared import Table
 from ._histories import History, as_history
-from ._words import Coupling, Flow, Pockets, Reference, Sides
+from ._words import Coupling, Flow, Gas, Pockets, Reference, Sides
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -31,7 +31,7 @@ class Fluid(Table):
     inlet: History | float
     outlet: float
     viscosity: float | None = None
-    gas: str | None = None
+    gas: Gas | None = None
     molar_mass: float | None = None
     temperature: float | None = None
     coupling: Coupling = "two-way"

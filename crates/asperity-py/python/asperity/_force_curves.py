@@ -10,6 +10,7 @@ import numpy as np
 from . import _core, _html
 from ._arrays import Counts, Floats, choice, columns, number
 from ._core import CaseError
+from ._paragraphs import of_force_fit
 from ._sealed import ReadOnlyArrays
 from ._segments import Kind, Segment, found
 from ._words import Branch, Control, Interface, Model, Weights
@@ -66,6 +67,10 @@ class ForceFit(ReadOnlyArrays):
         depth = self.depth - self.touch[0]
         free = self.baseline[0] + self.tilt[0] * depth
         return recorded(("depth", "m", depth), "load", self.load - free, self.predicted - free, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_force_fit(self, bibtex)
 
     def _lines(self) -> list[tuple[str, Interval]]:
         lines = [("E [Pa]", self.young), ("work of adhesion [J/m2]", self.work)]
@@ -165,6 +170,14 @@ class ForceCurve(ReadOnlyArrays):
     time: Floats | None = None
     #: Approach, holds and retraction in the order of the measurement; empty where they are not known.
     segments: tuple[Segment, ...] = ()
+
+    def __post_init__(self) -> None:
+        given = {name: value for name in ("force", "depth", "deflection", "height") if (value := getattr(self, name)) is not None}
+        if not len(given["force"]):
+            raise CaseError("a force curve holds one point at least")
+        # A record may hold gaps, but no column may be shorter than another.
+        self.__dict__.update(zip(given, columns(**given)))
+        super().__post_init__()
 
     @classmethod
     def from_deflection(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import io
 import os
 import tempfile
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import AnyPath, Floats, number
+from ._arrays import AnyPath, Floats, NotThere, number
 from ._core import CaseError
 from ._force_curves import ForceCurve
 from ._segments import found
@@ -39,11 +40,14 @@ def read_force_curves(path: AnyPath, *, spring_constant: float | None = None, se
     Raises
     ------
     ImportError : without the package that the file needs: ``pip install 'asperity[afm]'``
-    CaseError : no file, an unknown format, a file that cannot be read, or no curve with force and height
+    FileNotFoundError : there is no such file
+    CaseError : an unknown format, a file that cannot be read, or no curve with force and height
     """
     name = os.fspath(path)
+    if not os.path.exists(name):
+        raise NotThere(errno.ENOENT, "the file does not exist; check its name and folder", name)
     if not os.path.isfile(name):
-        raise CaseError(f"{name}: no such file")
+        raise CaseError(f"{name} is no file")
     given = {"spring_constant": spring_constant, "sensitivity": sensitivity}
     stated = {what: None if value is None else number(what, value) for what, value in given.items()}
     for what, value in stated.items():

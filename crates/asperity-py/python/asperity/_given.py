@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,36 +30,77 @@ def given(result: Result) -> dict[str, Any] | None:
     """The keys of the case; None where they are not known."""
     known: dict[str, Any] | None = result._setup.get("given")
     text = result._attributes.get("case")
-    if known is None and text:
+    return read(text) if known is None and text else known
+
+
+def read(text: str) -> dict[str, Any] | None:
+    """The keys of the text of a case; None before Python 3.11, which has no reader of TOML."""
+    try:
+        return dict(importlib.import_module("tomllib").loads(text))
+    except ImportError:
+        return None
+
+
+def change(known: dict[str, Any], changes: Sequence[str]) -> list[str]:
+    """Changes keys of a case by words ``key=value``; those whose place is not there stay, and are returned."""
+    others = []
+    for change in changes:
+        path, _, text = change.partition("=")
+        *tables, key = re.sub(r"\[(\d+)\]", r".\1", path.strip()).split(".")
+        table: Any = known
         try:
-            known = importlib.import_module("tomllib").loads(text)
-        except ImportError:  # before Python 3.11
-            return None
-    return known
+            for name in tables:
+                table = table[int(name)] if isinstance(table, list) else table.setdefault(name, {})
+            table[int(key) if isinstance(table, list) else key] = _toml(text.strip())
+        except (AttributeError, IndexError, TypeError, ValueError):
+            others.append(change)
+    return others
+
+
+def _toml(text: str) -> Any:
+    """A value of TOML, or a word without quotes."""
+    tomllib = importlib.import_module("tomllib")
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text
 
 
 def text_of(result: Result) -> str:
-    """The case as a file, with remarks on what a file cannot say; empty where it is not known."""
+    """The case as a file below a line that says so; empty where it is not known."""
     if text := result._attributes.get("case"):
-        return str(text).rstrip()
+        return headed(str(text), [])
     known = given(result)
-    return "" if known is None else "\n".join([*_remarks(result, known), _core.case_text(known).rstrip()])
+    if known is None:
+        return ""
+    left_out = list(_left_out(result, known))
+    return headed(_core.case_text({"left_out": left_out, **known} if left_out else known), left_out)
 
 
-def _remarks(result: Result, known: dict[str, Any]) -> Iterator[str]:
+def headed(text: str, left_out: list[str]) -> str:
+    """A case below a line that says so. What it leaves out is a key of it that no case has: it is refused, and never solves something else."""
+    whole, told = "in full", ""
+    if left_out:
+        whole = "but for what it leaves out"
+        told = "# This case does not run as it stands, because it leaves something out. Put that in, and delete the key left_out.\n"
+    return f"The case {whole}, numbers without a unit in SI units:\n\n{told}{text.rstrip()}"
+
+
+def _left_out(result: Result, known: dict[str, Any]) -> Iterator[str]:
     """What keys of a case do not say."""
     setup = result._setup
     if any(part.get("kind") == "array" for part in known.get("surface", [])):
-        yield "# The heights were given as an array: store them in a file, and name it in the part of the kind array."
-    if done := steps(setup):
-        yield f"# What was done to the heights: {'; '.join(done)}."
+        yield "The heights were given as an array: store them in a file, and name it in the part of the kind array."
+    # Results of an earlier release do not say which steps came after the parts were made or read.
+    if done := setup.get("since", steps(setup)):
+        yield f"What was done to the heights: {'; '.join(done)}."
     if setup.get("hardness_of_cells"):
-        yield "# The hardness of each cell was given as an array."
+        yield "The hardness of each cell was given as an array."
     for table in ("friction", "wear"):
         if "array" in known.get(table, {}):
-            yield f"# The coefficients of [{table}] were given as an array."
+            yield f"The coefficients of [{table}] were given as an array."
     for one in setup.get("prescribed") or []:
-        yield f"# From row {one['row']} on was prescribed: {one['control']}, {_listed(one['history'], _CONTROLLED.get(one['control'], ''))}."
+        yield f"From row {one['row']} on was prescribed: {one['control']}, {_listed(one['history'], _CONTROLLED.get(one['control'], ''))}."
 
 
 def steps(setup: dict[str, Any]) -> list[str]:
@@ -71,7 +113,7 @@ def surfaces(known: dict[str, Any]) -> str:
     told = []
     for part in known.get("surface", []):
         name = _PARTS.get(part["kind"], f"a {part['kind'].replace('-', ' ')}")
-        words = _listed({key: value for key, value in part.items() if key not in ("kind", "array", "single", "history") and not _is_middle(key, value)})
+        words = _listed({key: value for key, value in part.items() if key not in ("kind", "array", "single", "history", "process") and not _is_middle(key, value)})
         told.append(f"{name} ({words})" if words else name)
     return f"The surface is {' plus '.join(told)}." if told else ""
 
@@ -99,6 +141,24 @@ def load(known: dict[str, Any], unit: str) -> str:
     if not history or history.get("kind") == "table":
         return ""
     return f" ({_listed(history, unit if table.get('control') == 'load' else _CONTROLLED.get(table.get('control', ''), ''))})"
+
+
+def courses(known: dict[str, Any], unit: str) -> Iterator[str]:
+    """What was prescribed along the surfaces, whose force has this unit, and the velocity with which they wear."""
+    if along := known.get("tangential"):
+        own = unit if along["control"] == "force" else "m"
+        told = [f"along {axis} ({_listed(along[axis], own)})" for axis in "xy" if along.get(axis) and along[axis] != {"kind": "step", "value": 0.0}]
+        yield f"The tangential {along['control']} is prescribed {' and '.join(told)}." if told else ""
+    if isinstance(velocity := known.get("wear", {}).get("velocity"), dict):
+        yield f"The velocity of the wear is prescribed ({_listed(velocity, 'm/s')})."
+
+
+def seal(known: dict[str, Any]) -> str:
+    """What the seal is of which the case is a patch."""
+    told = known.get("seal", {})
+    profile = str(told.get("profile", ""))
+    words = f"has the profile {profile}" if profile in ("hertz", "uniform", "parabola") else f"is that of the file {profile}"
+    return f"The contact pressure across the seal {words} ({_listed({key: value for key, value in told.items() if key != 'profile'})})."
 
 
 def motion(known: dict[str, Any]) -> str:

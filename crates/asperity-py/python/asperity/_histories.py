@@ -14,6 +14,7 @@ from ._core import CaseError, waitable
 from ._declared import Table
 from ._parameters import call, parameters
 from ._sampled import as_points
+from ._sealed import Named
 from ._units import has_unit, is_labelled, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sampled", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
@@ -33,7 +34,7 @@ _NUMBERS = {
 }
 
 
-class _Made:
+class _Made(Named):
     """What is made of a kind and its numbers."""
 
     kind: str
@@ -358,13 +359,20 @@ def as_history(what: str, value: Any, unit: str | None = None, *, over: Times | 
         if over is None:
             raise CaseError(f"{what} is a function: make a history of it, {what}=asperity.sampled(function, end=...)")
         return _of_function(what, value, over._marks, breaks, _TOLERANCE, unit)
-    if _timed(value) is not value and np.size(value) > 1:
+    if _is_table(value):
         value = table(value)
     if not isinstance(value, History):
         return History("step", (number(what, value, unit),), unit=unit if has_unit(value) else None)
     if value.unit not in (None, unit):
         raise CaseError(f"{what} is a history in {value.unit}, but must be in {unit}")
     return value
+
+
+def _is_table(value: Any) -> bool:
+    """Whether it is what :func:`table` takes: points, or values with their times."""
+    if isinstance(value, (list, tuple)):
+        return len(value) > 0 and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in value)
+    return (isinstance(value, np.ndarray) and value.ndim == 2) or (_timed(value) is not value and np.size(value) > 1)
 
 
 def as_times(value: Times | ArrayLike) -> Times:

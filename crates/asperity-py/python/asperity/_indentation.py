@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, get_args, overload
 import numpy as np
 
 from . import _core
-from ._arrays import Counts, Floats, angle as radians, choice, columns, count, number
+from ._arrays import Counts, Floats, angle as radians, choice, columns, count, line, number
 from ._core import CaseError
+from ._findings import warn_caller
 from ._force_curves import ForceCurve, ForceFit, Interval, cantilever, fit_force_curve, interval, of_model, sample, share, table
 from ._materials import PowerLaw, Prony
+from ._paragraphs import of_indentation
 from ._sealed import ReadOnlyArrays
 from ._words import Branch, Control, Indenter, Interface, LongTime, Model, Weights
 from .plot import recorded
@@ -68,6 +70,13 @@ class IndentationFit(ReadOnlyArrays):
         """The channel that was fitted over time: the record as points, the model as a line, which takes the further arguments."""
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        numbers = [("E(0)", self.instantaneous, "Pa"), ("E(inf)", self.equilibrium, "Pa")]
+        numbers += [(f"E_{n}", modulus, "Pa") for n, (modulus, _) in enumerate(self.terms, 1)]
+        numbers += [(f"tau_{n}", time, "s") for n, (_, time) in enumerate(self.terms, 1)]
+        return of_indentation(self, f"A Prony series with {len(self.terms)} term{'s' if len(self.terms) != 1 else ''}", numbers, bibtex)
 
     def __repr__(self) -> str:
         low, high = self.equilibrium[1:]
@@ -121,6 +130,10 @@ class PowerLawFit(ReadOnlyArrays):
         """As :meth:`IndentationFit.plot`."""
         name, measured = ("load", self.load) if self.given == "depth" else ("depth", self.depth)
         return recorded(("time", "s", self.time), name, measured, self.predicted, ax, style)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was fitted, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_indentation(self, "A power law", [("E(1 s)", self.modulus, "Pa"), ("the exponent", self.exponent, "")], bibtex)
 
     def __repr__(self) -> str:
         told = ", ".join(f"{name} {value:.4g} ({low:.4g} to {high:.4g})" for name, (value, low, high) in self._lines())
@@ -298,6 +311,7 @@ def fit_indentation(
         fit_touch, given = fit_touch or model not in get_args(Model), given or (None if model in get_args(Model) else kept)
     elif load is None or depth is None:
         raise CaseError("load and depth are missing: give time, load and depth, or a ForceCurve")
+    _check_lengths(None if radius is None else size, depth)
     if model in get_args(Model):
         if thickness is not None and model != "hertz":
             raise CaseError(
@@ -336,6 +350,15 @@ def fit_indentation(
     series = [(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]]
     material = Prony(equilibrium=factor * found["equilibrium"][0], terms=series, **of_body)
     return IndentationFit(**{**found, **own, **record, "terms": fitted}, material=material)
+
+
+def _check_lengths(radius: float | None, depth: Any) -> None:
+    """Warns of lengths that no indentation has: numbers in nm or um."""
+    deepest = np.abs(line("depth", depth)).max(initial=0.0)
+    for what, length, most in (("radius", radius or 0.0, 1.0), ("depth", deepest, 0.1)):
+        if most < length < np.inf:
+            words = f"the {what} is {'up to ' if what == 'depth' else ''}{length:.4g} m: lengths are in m and loads in N [unlikely-unit]"
+            warn_caller(words, code="unlikely-unit")
 
 
 def _size(indenter: str, radius: Any, angle: Any) -> float:

@@ -11,11 +11,12 @@ import numpy as np
 from . import _core
 from ._arrays import ArrayLike, Floats, Scalar, Size, centres, choice, field, in_order, number, numbers_of, pair
 from ._columns import GAS_LEAKS, LEAKS, dataset, variable
-from ._findings import Finding, findings_of, warn
+from ._findings import Finding, findings_of, warn, warn_caller
+from ._paragraphs import of_leak
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
 from ._surface import Labelled, SurfaceLike, _parts
-from ._words import Flow, Sides
+from ._words import Flow, Gas, Rarefaction, Sides
 
 if TYPE_CHECKING:
     import xarray
@@ -80,8 +81,8 @@ class Leakage(Sealed):
         return self.hydraulic_gap**3 * drop * across / (12 * mu * along)
 
     def gas_leak_rate(
-        self, *, inlet: float, outlet: float, gas: str | None = None, viscosity: float | None = None,
-        molar_mass: float | None = None, temperature: float = 293.15, rarefaction: str = "boltzmann", standard: bool = False
+        self, *, inlet: float, outlet: float, gas: Gas | None = None, viscosity: float | None = None,
+        molar_mass: float | None = None, temperature: float = 293.15, rarefaction: Rarefaction = "boltzmann", standard: bool = False
     ) -> float:
         """Leak of a gas [kg/s] between absolute pressures [Pa]; with `standard` in Pa m^3/s at 0 degC (1 mbar l/s = 0.1 Pa m^3/s).
 
@@ -93,6 +94,9 @@ class Leakage(Sealed):
         rarefaction : "boltzmann", "slip" or "continuum"
         """
         fluid = {name: value for name, value in locals().items() if name not in ("self", "standard")}
+        choice("rarefaction", rarefaction, Rarefaction)
+        if gas is not None:
+            choice("gas", gas, Gas)
         return float(self._solved(numbers_of(fluid))["leak_rate_standard" if standard else "leak_rate"])
 
     def to_xarray(self) -> xarray.Dataset:
@@ -111,6 +115,10 @@ class Leakage(Sealed):
             data["conductance"] = variable(("flow_direction", "gradient_direction"), self.conductance, "m^3", "effective conductance")
         places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip("xy", self._gap.shape, self._size)}
         return dataset(data, places)
+
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was computed, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_leak(self, bibtex)
 
     def __repr__(self) -> str:
         nx, ny = self._gap.shape
@@ -176,11 +184,17 @@ def leakage(
     touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
+    widest = float(h[np.isfinite(h)].max(initial=0.0))
+    if widest > max(extent):
+        told = f"the gap is up to {widest:.4g} m wide on a domain of {max(extent):.4g} m: the gap [m] comes first, then where the surfaces touch"
+        warn_caller(f"{told}; check the units too [unlikely-unit]")
     return Leakage(h, touches, extent, keys)
 
 
-def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
-    """The leaks at the times of a result's fields."""
+def over_time(result: Result, keys: dict[str, Any], instants: Sequence[int] | None = None) -> xarray.Dataset:
+    """The leaks at the times of a result's fields, all of them or those with these numbers."""
+    if result.is_line:
+        raise _core.CaseError("leakage needs a contact over a plane: through a line contact nothing flows")
     if "gap" not in result.fields:
         raise _core.CaseError("leakage needs the field 'gap'; the result keeps " + (", ".join(result.fields) or "no fields"))
     setup = result._setup
@@ -188,7 +202,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     keys = {"sides": "periodic" if boundary == "periodic" else "closed", **keys}
     if keys.get("direction") == "both" and boundary != "periodic":
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
-    for name, words in (("direction", Flow), ("sides", Sides)):
+    for name, words in (("direction", Flow), ("sides", Sides), ("gas", Gas), ("rarefaction", Rarefaction)):
         if name in keys:
             choice(name, keys[name], words)
     temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
@@ -196,7 +210,8 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     rows: list[dict[str, Any]] = []
     states: list[tuple[int | None, float | None, int | None, float, float | None, float]] = []
     drop = keys["inlet"] - keys["outlet"] if "inlet" in keys and "outlet" in keys else keys.get("pressure_drop")
-    for index, time in enumerate(result.field_times):
+    for index in range(len(result.field_times)) if instants is None else instants:
+        time = result.field_times[index]
         gap = result.field("gap", index=index)
         contact = result._touches(index=index)
         found = _core.leakage(np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time))
@@ -213,7 +228,8 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     warn(findings_of(json.loads(told)))
     columns = {name: np.array([row[name] for row in rows]) for name in (*LEAKS, "leak_rate_standard", "conductance") if rows[0].get(name) is not None}
     pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
-    return _dataset(result, {**columns, result._leaks_along: result.field_times}, pressures)
+    along = result.field_times if instants is None else result.field_times[list(instants)]
+    return _dataset(result, {**columns, result._leaks_along: along}, pressures)
 
 
 def stored(result: Result) -> xarray.Dataset:

@@ -27,6 +27,7 @@ from . import _core, _html
 from ._arrays import ArrayLike, Floats, array, choice, each, line, number, points
 from ._core import CaseError
 from ._declared import check
+from ._findings import warn_caller
 from ._parameters import call
 from ._sealed import Sealed
 from ._spoken import spoken
@@ -354,7 +355,21 @@ def _window(value: Any) -> tuple[float, float]:
 def _pairs(terms: Sequence[tuple[float, float]], units: tuple[str, str]) -> list[tuple[float, float]]:
     """The terms of a series."""
     listed = terms if hasattr(terms, "__len__") else list(terms)
-    return points("terms", listed, units) if len(listed) else []
+    found = points("terms", listed, units) if len(listed) else []
+    if _look_swapped(found, units[0]):
+        amount = "modulus [Pa]" if units[0] == "Pa" else "compliance [1/Pa]"
+        (value, time), what = found[0], amount.split()[0]
+        warn_caller(f"terms are ({amount}, time [s]): the first has the {what} {value:g} {units[0]} and the time {time:g} s. Exchange them if that is not meant [unlikely-unit]")
+    return found
+
+
+def _look_swapped(terms: list[tuple[float, float]], unit: str) -> bool:
+    """Whether the terms would be usual ones if amount and time were exchanged: a modulus in Pa is a large number, a compliance a small one,
+    and a time lies between."""
+    far = 1e3
+    if unit == "Pa":
+        return bool(terms) and all(time > far * abs(value) for value, time in terms)
+    return unit == "1/Pa" and bool(terms) and all(abs(value) > far * time for value, time in terms)
 
 
 def _terms(amount: str, terms: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
@@ -385,6 +400,9 @@ class _Summed(Material):
             )
         # The sum stands for the model where it was fitted.
         known: dict[str, Any] = {key: own.pop(key) for key in ("window", "shift", "temperature") if key in own}
+        if "window" not in known:
+            name = type(self).__name__
+            raise CaseError(f"{name} needs window=(first, last), the times [s] over which it becomes a sum: the shortest step and the end of the run")
         self._hold(_sum=_core.Body({"poisson": 0.5, "material": own}, known["window"]))
         instantaneous, terms, fluidity = self._sum.creep_terms()
         series = {"instantaneous": instantaneous, "terms": _terms("compliance", terms), "fluidity": fluidity}

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _given
+from . import _core, _given
 from ._arrays import cells_of
 from ._cite import entries
+from ._core import __version__
 from ._prefixes import quantity
 from ._units import UNITS
 
@@ -32,10 +33,50 @@ _CITED = {"Spinu": "spinu2017", "Polonsky": "polonsky1999", "Yastrebov": "yastre
 
 def paragraph(result: Result, bibtex: bool, case: bool) -> str:
     """What was run, in sentences, with `case` the case that runs it again, and with `bibtex` the entries of what the sentences cite."""
-    text = " ".join(sentence for sentence in _sentences(result) if sentence)
-    if case and (whole := _given.text_of(result)):
-        text += f"\n\nThe case in full, numbers without a unit in SI units:\n\n{whole}"
+    return _written(_sentences(result), _given.text_of(result) if case else "", bibtex)
+
+
+def of_seal(found: Mapping[str, Any], warned: Sequence[str], given: tuple[str, Sequence[str]], bibtex: bool, case: bool) -> str:
+    """What was run for a whole seal; `given` are the text of its case and the changes of it."""
+    text, changes = given
+    known = _given.read(text) or {}
+    left_out = [f"Changed is {one}." for one in (_given.change(known, changes) if known else changes)]
+    whole = _given.headed(_core.case_text({**({"left_out": left_out} if left_out else {}), **known}) if changes and known else text, left_out)
+    return _written(_of_seal(found, warned, known), whole if case else "", bibtex)
+
+
+def _written(sentences: Iterator[str], case: str, bibtex: bool) -> str:
+    text = " ".join(sentence for sentence in sentences if sentence) + (f"\n\n{case}" if case else "")
     return f"{text}\n\n{entries(['asperity', *(key for words, key in _CITED.items() if words in text)])}" if bibtex else text
+
+
+def _of_seal(found: Mapping[str, Any], warned: Sequence[str], known: dict[str, Any]) -> Iterator[str]:
+    seeds = found["seeds"]
+    pressures = [point["pressure"] for seed in seeds for point in seed["seal_sweep"]]
+    ends = " to ".join(quantity(float(end), "Pa") for end in (min(pressures), max(pressures)))
+    cells, size = (known.get("domain", {}).get(name) for name in ("cells", "size"))
+    patch = f" of {' x '.join(map(str, cells))} cells" if cells else ""
+    patch += f" on {' x '.join(one if isinstance(one, str) else quantity(float(one), 'm') for one in size)}" if size else ""
+    yield (
+        f"The leak of a whole seal was computed with asperity {__version__} from the contact of a patch{patch}, which was solved under "
+        f"{len(pressures)} mean pressures, {ends}{f', for {len(seeds)} seeds of the roughness' if len(seeds) > 1 else ''}."
+    )
+    yield _given.surfaces(known)
+    ratios = [{key: body[key] for key in ("poisson", "bulk_modulus") if key in body} for body in known.get("body", [])]
+    yield _given.materials({"body": [{**body, "material": {**body.get("material", {}), **ratio}} for body, ratio in zip(known.get("body", []), ratios)]})
+    yield _given.seal(known)
+    yield _given.motion(known)
+    yield (
+        "At each place across the seal the bodies touch as in the dry contact under the contact pressure less that of the fluid, and let through what the "
+        f"patch lets through under that pressure; the {found['fluid']} flows from {quantity(float(found['inlet']), 'Pa')} to "
+        f"{quantity(float(found['outlet']), 'Pa')}, and its pressure follows from the conservation of the flow (Reynolds' equation)."
+    )
+    low, high = found["seal_leak_bounds"]
+    unit = found["unit"]
+    if low is not None and high is not None:
+        yield f"Between the pressures of the sweep the conductance was interpolated; the pressures allow mean leaks from {low:.3g} to {high:.3g} {unit}."
+    if warned:
+        yield f"The program warned of: {', '.join(warned)}."
 
 
 def _sentences(result: Result) -> Iterator[str]:
@@ -61,8 +102,15 @@ def _sentences(result: Result) -> Iterator[str]:
     for name, sentence in (("adhesion", _of_adhesion), ("friction", _of_friction), ("wear", _of_wear)):
         if setup.get(name):
             yield sentence(setup[name])
+    if (curve := setup.get("curve")) and len(result) > 1:
+        unit = result.units("load") if curve["control"] == "load" else UNITS[curve["control"]]
+        ends = " to ".join(quantity(float(curve[end]), unit) for end in ("first", "last"))
+        yield f"The {_CONTROLS[curve['control']]} was prescribed in {len(result)} contacts, {ends}."
+    elif not setup.get("stage_controls") and len(result) == 1:
+        yield f"The load is {quantity(float(result.load[0]), result.units('load'))}."
     if setup.get("stage_controls"):
         yield _of_load(result, setup, given)
+    yield from _given.courses(given, result.units("load"))
     if setup.get("motion"):
         yield _of_motion(result, setup["motion"])
     yield _given.motion(given)
@@ -146,10 +194,10 @@ def _of_load(result: Result, setup: dict[str, Any], given: dict[str, Any]) -> st
     controls = [_CONTROLS.get(control, control) for control in setup["stage_controls"]]
     text = f"The {controls[0]} was prescribed{_given.load(given, result.units('load'))}." if len(controls) == 1 else f"{len(controls)} stages prescribed in turn {', '.join(controls)}."
     for name, told in (setup.get("sampled") or {}).items():
-        unit = result.units(name) if name == "load" else UNITS[name]
+        unit = result.units(name) if name == "load" else told.get("unit") or UNITS[name]
         text += f" The {name} is a function of time, taken at {told['points']:.0f} points, within {quantity(told['error'], unit)} of it."
-    if setup.get("prescribed"):
-        text += f" It was changed {len(setup['prescribed'])} times between two rows."
+    if changes := len(setup.get("prescribed") or []):
+        text += f" It was changed {'once' if changes == 1 else f'{changes} times'} between two rows."
     return text + (" The times of the materials follow the temperature." if setup.get("temperature") is not None else "")
 
 

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from ._core import CaseError
 from ._declared import arguments_of
 from ._arrays import ArrayLike, Floats, direction_of, line, number
 from ._flash import Flash
@@ -162,6 +163,8 @@ def rubber_friction(result: Result, *, shear_stress: float) -> Floats:
     >>> bool(abs(added[0] - 0.5 * result.contact_fraction[0]) < 1e-12)
     True
     """
+    if isinstance(shear_stress, (list, tuple, dict)) or np.ndim(shear_stress) > 0:
+        raise CaseError("shear_stress is one number [Pa] here: one that depends on the velocity is given to asperity.slide or asperity.steady, as shear_stress=")
     load, force = result.load, number("shear_stress", shear_stress) * result.contact_area
     share = np.divide(force, load, out=np.zeros_like(load), where=load > 0)
     return np.asarray(result.friction_coefficient + np.where(result.velocity < 0, -share, share))

@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from ._contact import ElasticContact, ElasticCurve
 from ._core import CaseError
 from ._digest import Walk, digest
 from ._findings import ResultWarning
@@ -73,7 +74,8 @@ def unseen(walk: Walk, point: Point) -> list[str]:
     """What may have changed, of what a function reaches, since the result of a point was stored."""
     assert point.folder is not None
     stored = os.path.getmtime(os.path.join(point.folder, f"{point.name}.zarr"))
-    return [*walk.unknown, *(f"the file {file}" for file in sorted(walk.files) if os.path.exists(file) and os.path.getmtime(file) > stored)]
+    readers = [f"the files that {', '.join(sorted(walk.readers))} reads"] if walk.readers and not walk.files else []
+    return [*walk.unknown, *readers, *(f"the file {file}" for file in sorted(walk.files) if os.path.exists(file) and os.path.getmtime(file) > stored)]
 
 
 def _files(directory: str, text: str) -> dict[str, bytes]:
@@ -122,6 +124,8 @@ def _solved(point: Point, folder: str) -> Result:
     if hasattr(point.function, "options"):
         given = {"progress": False, "fields": point.fields, **given}
     found = point.function(**given)
+    if isinstance(found, (ElasticContact, ElasticCurve)):
+        found = found.to_result()
     if not isinstance(found, Result):
         raise TypeError(f"the function of a study must return an asperity.Result, but returned {type(found).__name__}")
     found.save(path, force=True)

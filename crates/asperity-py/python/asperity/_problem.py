@@ -10,7 +10,7 @@ import numpy as np
 
 from ._adhesion import Adhesion
 from ._fluid import Fluid
-from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, number
+from ._arrays import AnyPath, ArrayLike, Floats, Scalar, Size, as_plane, check_places, distinct, in_order, line, number
 from ._core import CaseError
 from ._declared import Table, check
 from ._fit import Fit
@@ -21,7 +21,7 @@ from ._rows import Field, Quantity
 from ._shifts import temperature_keys
 from ._surface import Surface, SurfaceLike, check_boundary, per_cell, surface_of
 from ._tangential import Friction, Tangential
-from ._units import bare
+from ._units import UNITS, bare
 from ._wear import Wear
 from ._words import Boundary, Method, Plasticity, Scheme
 
@@ -56,7 +56,7 @@ class Problem:
     field_times: ArrayLike | None = None
     title: str = ""
     #: Of each history that was given as a function: the points of its table, and the largest distance that was found.
-    sampled: dict[str, dict[str, float]] = field(init=False, default_factory=dict)
+    sampled: dict[str, dict[str, Any]] = field(init=False, default_factory=dict)
 
     #: Groups of fields of which exactly one is given.
     alternatives: ClassVar[list[tuple[str, ...]]] = [("load", "pressure"), ("surface", "gap")]
@@ -99,7 +99,9 @@ class Problem:
     def given(self, shape: Surface, keys: dict[str, Any]) -> dict[str, Any]:
         """The keys of the case as they were given, without arrays: surfaces by what they were made or read from."""
         bodies = [{key: value for key, value in body.items() if key != "hardness_array"} for body in keys["body"]]
-        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies})
+        # Each of them is a step.
+        kept = {} if self.field_times is None else {"times": line("field_times", self.field_times).tolist()}
+        found: dict[str, Any] = in_json({**keys, "surface": shape._origin, "body": bodies, "output": {**keys["output"], **kept}})
         return found
 
     def load_keys(self, load_unit: str) -> dict[str, Any]:
@@ -143,12 +145,17 @@ class InTime(Problem):
         return shape, keys, arrays
 
     def history_keys(self, what: str, value: Any, unit: str | None = None) -> dict[str, Any]:
-        if np.size(self.breaks) and not callable(value):
+        if np.size(self.breaks) and not any(map(callable, self._courses())):
             raise CaseError(f"breaks goes with a {what} that is a function: a history has its own")
         history = as_history(what, value, unit, over=as_times(self.times), breaks=self.breaks)
         if history.error is not None:
-            self.sampled[what] = {"points": len(history.points), "error": history.error}
+            self.sampled[what] = {"points": len(history.points), "error": history.error, "unit": unit or UNITS.get(what, "")}
         return history._keys
+
+    def _courses(self) -> list[Any]:
+        """All that may be a function of time."""
+        given = [getattr(self, name, None) for name in ("load", "pressure", "approach", "velocity", "path")]
+        return [*given, getattr(self.wear, "velocity", None), *getattr(getattr(self, "tangential", None), "course", ())]
 
     def course_keys(self) -> dict[str, Any]:
         return {"time": {**as_times(self.times)._keys, "scheme": self.scheme}}
@@ -172,7 +179,7 @@ class InStages(InTime):
         if self.tangential is not None:
             if not isinstance(self.tangential, Tangential):
                 raise CaseError(f"tangential is {self.tangential!r}, but must be asperity.tangential(force=...) or (displacement=...)")
-            keys["tangential"] = self.tangential._keys(shape.is_line)
+            keys["tangential"] = self.tangential._keys(shape.is_line, self.history_keys)
         if self.friction is not None:
             given = self.friction if isinstance(self.friction, Friction) else Friction(self.friction)
             keys["friction"], coefficients = given._parts(shape)

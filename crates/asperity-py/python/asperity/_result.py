@@ -18,16 +18,17 @@ from . import _core, _html
 from ._arrays import AnyArray, AnyPath, Floats, Labels, as_plane, cells_of, choice, frozen, in_hertz, meant, number, numbers_of, plain
 from ._columns import COLUMNS, FIELDS, HISTOGRAMS, QUANTITIES, ROW, STRESS, VECTORS, dataset, frame, told, variable
 from ._core import CaseError
-from ._findings import Finding, findings_of
+from ._findings import Finding, findings_of, warn_caller
+from ._given import given as case_of
 from ._grid import OnGrid
 from ._leakage import over_time, stored
 from ._methods import paragraph
 from ._rows import Columns, Field, StressColumns
 from ._sealed import Sealed, read_only
-from ._states import State
+from ._states import NO_HALF_SPACE, State
 from ._stress import Stress, changing, stress
 from ._units import written
-from ._words import Flow, Nearest, Sides
+from ._words import Flow, Gas, Nearest, Rarefaction, Sides
 from .plot import Plots
 
 if TYPE_CHECKING:
@@ -225,7 +226,13 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         True
         """
         time, load, approach = (self._table[name].tolist() for name in ("time", "load", "approach"))
-        found = _core.cycles_of(time, load, approach, in_hertz("frequency", frequency), number("start", start))
+        cycles, sines = in_hertz("frequency", frequency), [sine["frequency"] for sine in self._setup.get("sines") or []]
+        if sines and not any(np.isclose(cycles, known, rtol=1e-6, atol=0.0) for known in sines):
+            own = ", ".join(f"{known:g}" for known in dict.fromkeys(sines))
+            angular = any(np.isclose(cycles, 2.0 * np.pi * known, rtol=1e-3, atol=0.0) for known in sines)
+            hint = "; an angular frequency [rad/s] is divided by 2 pi" if angular else ""
+            warn_caller(f"cycles of {cycles:g} Hz are asked for, but what was prescribed is a sine of {own} Hz{hint}")
+        found = _core.cycles_of(time, load, approach, cycles, number("start", start))
         return [Cycle(*numbers) for numbers in found]
 
     @property
@@ -260,10 +267,11 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         return values
 
     def stress(
-        self, *, time: float | None = None, index: int | None = None, method: Nearest | None = None, depths: str | Sequence[float] = "auto",
-        poisson: float | None = None, body: int = 0
+        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None,
+        depths: str | Sequence[float] = "auto", poisson: float | None = None, body: int = 0
     ) -> Stress:
-        """The stress below the surface at the stored `time` [s], or with that index, or at the nearest time, as :meth:`field`; default the last.
+        """The stress below the surface at the stored `time` [s], of a sweep the stored `velocity` [m/s], or with that index, or at the nearest
+        time, as :meth:`field`; default the last.
 
         It follows from the stored pressure, under a tangential load also from the stored tractions, with the Poisson's ratio of the body of that number, or `poisson`; see
         :func:`asperity.stress`. Where that ratio changes with time (constant bulk modulus), the pressures of all rows must be kept. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
@@ -279,8 +287,17 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
         True
         """
         setup = self._setup
+        at: dict[str, Any] = {"time": time, "velocity": velocity, "index": index, "method": method}
+        case = case_of(self) or {}
+        if "shear_stress" in case.get("motion", {}) or case.get("flash", {}).get("friction"):
+            warn_caller(
+                "the stress is that of the pressure alone: the friction of the surfaces in motion is not in it. asperity.stress takes it with the bare "
+                "pressure, as tractions=", UserWarning
+            )
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
+        if setup.get("kernel") == "given":
+            raise CaseError(NO_HALF_SPACE)
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):
@@ -288,7 +305,7 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
             poisson = known[body] if known else None
             creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
             if poisson is None and creep is not None and "stage_controls" in setup:
-                last = self._index(time=time, index=index, method=method) + 1
+                last = self._index(**at) + 1
                 rows = self._table["time"][:last]
                 if "motion" in setup:
                     raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
@@ -301,7 +318,6 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
                 return changing(setup, body, (self._table["stage"][:last].astype(int).tolist(), rows.tolist()), pressures, self.size, depths)
             if poisson is None:
                 raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
-        at: dict[str, Any] = {"time": time, "index": index, "method": method}
         pressure, tractions = self.field("pressure", **at), None
         if "friction" in setup:
             # What acts on the first body acts the other way on the second.
@@ -345,18 +361,21 @@ class Result(OnGrid, Columns, StressColumns, Sealed):
 
     def leakage(
         self, *, direction: Flow | None = None, pressure_drop: float | None = None, viscosity: float | None = None,
-        gas: str | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
-        outlet: float | None = None, rarefaction: str | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
-        field: bool | None = None
+        gas: Gas | None = None, molar_mass: float | None = None, temperature: float | None = None, inlet: float | None = None,
+        outlet: float | None = None, rarefaction: Rarefaction | None = None, sides: Sides | None = None, smallest_gap: float | None = None,
+        field: bool | None = None, time: float | None = None, velocity: float | None = None, index: int | None = None, method: Nearest | None = None
     ) -> xarray.Dataset:
-        """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time`, of steady states over `leak_velocity`
-        (see :func:`leakage` and docs/leakage.md).
+        """Leakage at the times of the stored fields, or at one of them, as :meth:`field` takes it, as xarray.Dataset over `leak_time`, of
+        steady states over `leak_velocity` (see :func:`leakage` and docs/leakage.md).
 
         Without arguments the leaks that the run stored. Otherwise those of a liquid (`pressure_drop` [Pa], `viscosity` [Pa s]), of a
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
         without a fluid the gap alone. `field` adds `fluid_pressure`.
         """
-        given = numbers_of({name: value for name, value in locals().items() if name != "self"})
+        at: dict[str, Any] = {"time": time, "velocity": velocity, "index": index, "method": method}
+        given = numbers_of({name: value for name, value in locals().items() if name not in ("self", "at", *at)})
+        if any(one is not None for one in at.values()):
+            return over_time(self, given, [self._index(**at)])
         return over_time(self, given) if given or not self._leaks else stored(self)
 
     def methods(self, *, bibtex: bool = False, case: bool = True) -> str:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -11,8 +12,9 @@ from ._arrays import AnyPath, Floats
 from ._columns import dataset, variable
 from ._command import answered
 from ._findings import Finding, findings_of, warn
+from ._methods import of_seal
 from ._sealed import Sealed
-from ._solve import Case, Changes, overrides
+from ._solve import Case, Changes, overrides, source
 
 if TYPE_CHECKING:
     import xarray
@@ -56,8 +58,8 @@ class Seal(Sealed):
     contact_pressure: Floats
     fluid_pressure: Floats
 
-    def __init__(self, found: dict[str, Any]) -> None:
-        self._found = found
+    def __init__(self, found: dict[str, Any], given: tuple[str, Sequence[str]]) -> None:
+        self._found, self._case = found, given
         spreads = {name: found[f"seal_{name}"] and _spread(found[f"seal_{name}"]) for name in ("leak", "leak_per_metre", "leak_one_way", "opening_pressure")}
         usual = {unit: _spread(found[f"seal_leak_{name}"]) for unit, name in _USUAL.items() if f"seal_leak_{name}" in found}
         low, high = _numbers(found["seal_leak_bounds"])
@@ -80,6 +82,12 @@ class Seal(Sealed):
     def answer(self) -> dict[str, Any]:
         """All numbers, as ``asperity seal --json`` prints them."""
         return self._found
+
+    def methods(self, *, bibtex: bool = False, case: bool = True) -> str:
+        """A paragraph on what was computed for the methods section of a paper, with `case` the case, which :func:`seal` computes again, and
+        with `bibtex` the entries of what it cites."""
+        warned = sorted({finding["code"] for finding in self.findings if finding["severity"] == "warning"})
+        return of_seal(self._found, warned, self._case, bibtex, case)
 
     def __repr__(self) -> str:
         state = "/".join(sorted(set(self.states)))
@@ -157,8 +165,11 @@ def seal(
     >>> found.states, found.leak.mean > 2 * found.leak_one_way.mean
     (['leaks'], True)
     """
-    changed = [word for key in overrides(set) for word in ("--set", key)]
-    found = Seal(answered("seal", case, directory, changed, not progress, jobs=jobs, threads=threads))
+    changes = overrides(set)
+    changed = [word for key in changes for word in ("--set", key)]
+    answer = answered("seal", case, directory, changed, not progress, jobs=jobs, threads=threads)
+    path, text = source(case)
+    found = Seal(answer, (Path(path).read_text(encoding="utf-8") if text is None else text, changes))
     warn(found.findings)
     return found
 

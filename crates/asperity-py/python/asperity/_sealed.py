@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+from abc import ABCMeta
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,17 +22,29 @@ def read_only(value: Any) -> Any:
     return value
 
 
-class ReadOnlyArrays:
-    """A dataclass whose arrays are read-only, in its copies and pickles too."""
+class Spelled(ABCMeta):
+    """The type of classes whose misspelt arguments are answered with the nearest one."""
 
-    def __post_init__(self) -> None:
-        self.__setstate__(self.__dict__)
+    if not TYPE_CHECKING:  # where it would hide what the classes take
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update({name: read_only(value) for name, value in state.items()})
+        def __call__(cls, *positional, **named):
+            try:
+                return super().__call__(*positional, **named)
+            except TypeError as error:
+                # One that comes from within has an inner frame.
+                within = error.__traceback__.tb_next.tb_next if error.__traceback__ and error.__traceback__.tb_next else None
+                known = () if within else inspect.signature(cls).parameters
+                for unknown in (name for name in named if known and name not in known):
+                    raise TypeError(f"{cls.__name__}() takes no argument {unknown!r}{meant(unknown, known)}") from None
+                raise
+
+        @property
+        def __signature__(cls):
+            first, *others = inspect.signature(cls.__init__).parameters.values()
+            return inspect.Signature(others)
 
 
-class Named:
+class Named(metaclass=Spelled):
     """An object whose misspelt attributes are answered with the nearest one."""
 
     if not TYPE_CHECKING:  # where it would hide misspelt names
@@ -41,6 +55,16 @@ class Named:
                 return object.__getattribute__(self, name)
             known = [] if name.startswith("_") else [one for one in dir(self) if one[0] != "_"]
             raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{meant(name, known)}")
+
+
+class ReadOnlyArrays(Named):
+    """A dataclass whose arrays are read-only, in its copies and pickles too."""
+
+    def __post_init__(self) -> None:
+        self.__setstate__(self.__dict__)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({name: read_only(value) for name, value in state.items()})
 
 
 class Sealed(Named):

@@ -22,6 +22,7 @@ from ._arrays import AnyPath, ArrayLike, Floats, each, number, points
 from ._core import CaseError
 from ._findings import warn_caller
 from ._parameters import call, parameters
+from ._sealed import Named
 from ._units import carries
 
 
@@ -30,7 +31,7 @@ Vertical = str | float | Sequence[tuple[float, float]] | None
 
 
 @dataclass(frozen=True)
-class Shift:
+class Shift(Named):
     """A shift factor a_T over temperature [K]; made by :func:`wlf`, :func:`arrhenius`, :func:`shift_table` or a fit.
 
     With a vertical shift the moduli at a temperature are those at the reference over b_T: ``vertical="density"`` is

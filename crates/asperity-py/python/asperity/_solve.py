@@ -14,7 +14,7 @@ import numpy as np
 
 from . import _core
 from ._declared import arguments_of
-from ._arrays import AnyPath, cells_of, meant, path_of
+from ._arrays import AnyPath, NotThere, cells_of, meant, path_of
 from ._columns import HISTOGRAMS
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -86,7 +86,8 @@ class Step(Numbers, Sealed):
         setup = self._march._setup
         contact = np.ascontiguousarray(self.field("contact") > 0, dtype=np.uint8)
         shear = (self.field("traction_x"), self.field("traction_y")) if "friction" in setup else None
-        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear)
+        layered = _core.LAYERED_STRESS if "layer_separable" in setup else None
+        return State(self._march.size, setup.get("boundary", "free"), self.gap, self.pressure, contact, setup.get("poisson") or (), shear, layered)
 
     def _number(self, name: str) -> float:
         row = self.__dict__["_row"]
@@ -130,7 +131,7 @@ class March(Sealed):
         # Threads that share a march take turns.
         self._turn = threading.Lock()
         self._hold(initial_gap=shape.gap(), size=shape.size)
-        told = {"given": given.given(shape, keys), "steps": shape.history, **({"sampled": given.sampled} if given.sampled else {})}
+        told = {"given": given.given(shape, keys), "steps": shape.history, "since": shape._since, **({"sampled": given.sampled} if given.sampled else {})}
         self._setup: dict[str, Any] = {**json.loads(self._core.setup), **told}
         fits = [material.fit for body in bodies_of(given.material) for material in materials_of(body) if material.fit is not None]
         self._of_fits = [finding for fit in fits for finding in fit.findings]
@@ -417,13 +418,22 @@ def check(case: Case, *, set: Changes = None) -> dict[str, Any]:
 def source(case: Case) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
-        return os.curdir, _core.case_text(dict(case))
+        return os.curdir, _core.case_text({str(key): _listed(value) for key, value in case.items()})
     if isinstance(case, str) and "\n" in case:
         return os.curdir, case
     path = os.fspath(case)
     if not os.path.exists(path):
-        raise FileNotFoundError(errno.ENOENT, "there is no case file of this name", path)
+        raise NotThere(errno.ENOENT, "there is no case file of this name", path)
     return path, None
+
+
+def _listed(value: Any, depth: int = 32) -> Any:
+    """Keys of a case with lists in place of arrays. What is deeper than any case is left as it is."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if depth and isinstance(value, Mapping):
+        return {key: _listed(one, depth - 1) for key, one in value.items()}
+    return [_listed(one, depth - 1) for one in value] if depth and isinstance(value, (list, tuple)) else value
 
 
 def overrides(given: Mapping[str, Any] | Sequence[str] | None) -> list[str]:

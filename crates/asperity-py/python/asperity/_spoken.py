@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from ._core import CaseError
 
@@ -31,12 +31,23 @@ _WORDS = {
 #: Sections whose keys are parameters of a call, and those that are arguments of their own.
 _PLAIN = "domain|solver|output|time|motion"
 _OBJECTS = "adhesion|friction|tangential|wear|flash"
-_RULES: list[tuple[str, str]] = [
+#: What makes each of them.
+_MADE = {name: f"asperity.{name if name == 'tangential' else name.capitalize()}" for name in _OBJECTS.split("|")}
+
+
+def _value(word: str) -> str:
+    """A value of a case as Python writes it."""
+    return {"true": "True", "false": "False"}.get(word, word)
+
+
+_RULES: list[tuple[str, str | Callable[[re.Match[str]], str]]] = [
     (r"\bset (`end`, )?times=asperity\.adaptive\(end\)( and leave out `\w+`)?", "take times=asperity.adaptive(end)"),
     (r"\bSet (`end`, )?times=asperity\.adaptive\(end\)( and leave out `\w+`)?", "Take times=asperity.adaptive(end)"),
     (r"\[wear\] (\w+) = \"([^\"]*)\"", r"wear=asperity.Wear(..., \1=...), such as \2,"),
     (r"\[wear\]", "wear=asperity.Wear(...)"),
     (r"\[leakage\]", "fluid=asperity.Fluid(...)"),
+    (rf"\b({_OBJECTS})\.([a-z_]+) = (\"[a-z-]+\"|true|false)", lambda found: f"{found[1]}={_MADE[found[1]]}(..., {found[2]}={_value(found[3])})"),
+    (r'\bleakage\.([a-z_]+) = ("[a-z-]+")', r"fluid=asperity.Fluid(..., \1=\2)"),
     # What is prescribed, be it a load, a pressure or an approach, is the table [load] of a case.
     (r"\bload\.history\.(\w+)", r"\1 of the history of the load"),
     (r"\bload\.history\b", "the history of the load"),
@@ -47,7 +58,7 @@ _RULES: list[tuple[str, str]] = [
     (r'\bset ([a-z_]+) to ("[a-z-]+")', r"give \1=\2"),
     # coupling = "full", allow_unresolved = true; a quantity is a number here.
     (r'\b([a-z_]+) = ("[a-z-]+")', r"\1=\2"),
-    (r"\b([a-z_]+) = (true|false)\b", lambda found: f"{found[1]}={found[2].capitalize()}"),  # type: ignore[list-item]
+    (r"\b([a-z_]+) = (true|false)\b", lambda found: f"{found[1]}={_value(found[2])}"),
     (r'\b([a-z_]+) = (-?[0-9][0-9.e-]*)(?![0-9.])', r"\1=\2"),
     (r'\b([a-z_]+) = "(-?[0-9][^"]*)"', r"\1 of \2"),
     (r'such as "(-?[0-9][^"]*)"', r"such as \1"),

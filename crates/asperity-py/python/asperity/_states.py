@@ -14,6 +14,13 @@ from ._findings import warn_caller
 from ._words import Boundary
 
 
+#: Why a body of another kernel has no stress.
+NO_HALF_SPACE = (
+    "the stress below the surface is that of a half-space, but the contact is one of a given kernel: give stress the bare pressure, size and boundary "
+    "where the body is nearly a half-space at the depths of interest"
+)
+
+
 @dataclass(frozen=True)
 class State:
     """One state of a contact."""
@@ -28,6 +35,8 @@ class State:
     poisson: Sequence[float | None] = ()
     #: Tangential tractions along x and y on the first body.
     tractions: tuple[Floats, Floats] | None = None
+    #: Why there is no stress below it, where there is none.
+    no_stress: str | None = None
 
 
 @runtime_checkable

@@ -13,6 +13,7 @@ from . import _core
 from ._columns import dataset, variable
 from ._core import CaseError
 from ._findings import warn_caller
+from ._paragraphs import of_stress
 from ._sealed import Sealed
 from ._states import HasState, refuse_beside, said
 from ._surface import SurfaceLike, _parts
@@ -130,6 +131,10 @@ class Stress(Sealed):
         places = {axis: variable(axis, centres(n, length), "m", axis) for axis, n, length in zip(axes, self._pressure.shape, self._given[1])}
         return dataset(data, {"depth": variable("depth", self.depths, "m", "depth below the surface"), **places})
 
+    def methods(self, *, bibtex: bool = False) -> str:
+        """A paragraph on what was computed, for the methods section of a paper; with `bibtex` the entry to cite."""
+        return of_stress(self, bibtex)
+
     def __repr__(self) -> str:
         ratio = "changing with time" if self._poisson is None else f"{self._poisson:g}"
         cells, deepest = cells_of(self._pressure), self.depths[-1]
@@ -197,6 +202,8 @@ def of_state(held: Any, poisson: Scalar | None, depths: str | Sequence[float]) -
         found: Stress = held.stress(depths=depths, poisson=poisson)
         return found
     state = held._state()
+    if state.no_stress is not None:
+        raise CaseError(state.no_stress)
     ratio = poisson if poisson is not None else state.poisson[0] if state.poisson else None
     if ratio is None:
         raise CaseError(f"the {type(held).__name__} does not say the Poisson's ratio of the body, or it changes with time: give it, as in poisson=0.3")

@@ -12,7 +12,7 @@ import json
 import os
 import re
 import time
-from collections.abc import Callable, Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -58,7 +58,7 @@ def study(
     ----------
     case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`, with `velocities`
         of :func:`steady`, with `velocity` or `path` of :func:`slide`; or
-        a function that takes the parameters of a point and returns a :class:`Result`
+        a function that takes the parameters of a point and returns a :class:`Result`, or what :func:`elastic` returns
     over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
         ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Give values that are neither numbers nor text (materials,
         surfaces) with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.
@@ -130,6 +130,11 @@ def study(
         if given is not None:
             count(what, given)
     common, walk = _common(case, plan.names)
+    read = "which is what the processes of the study read: change it there, or give it as an argument"
+    if walk.changed:
+        raise CaseError(f"{'; '.join(walk.changed)}, {read}")
+    if walk.older:
+        warn_caller(f"{'; '.join(walk.older)}, {read}", UserWarning)
     _check_names(common, plan)
     _check_loads(common, over, plan)
     place = None if folder is None else os.path.abspath(os.fspath(folder))
@@ -193,7 +198,12 @@ def _tell_unseen(walk: Walk, points: list[Point], place: str) -> None:
 
 
 def _warn(points: list[Point], done: dict[int, Solved]) -> None:
-    """A warning for each kind of finding, which names the first of its points. Those of a case are in its results."""
+    """A warning for each kind of finding, which names the first of its points, and one for the points that failed. Findings of a case are in
+    its results."""
+    failed = [(point, done[n][1]) for n, point in enumerate(points) if done[n][0] == "failed"]
+    if failed:
+        place = ", ".join(f"{name} = {value}" for name, value in label_all(failed[0][0].settings).items())
+        warn_caller(f"{len(failed)} of {len(points)} points failed; the first, {place}: {failed[0][1]}")
     held: dict[str, list[tuple[Any, Finding]]] = {}
     for n, point in enumerate(points):
         result = done[n][2]
@@ -262,8 +272,10 @@ def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
         # Numbers in SI units, which are labels too.
         unit = _load_unit(values) if name == "load" else None
         values = [number(name, value, unit) for value in (np.atleast_1d(bare(name, values, unit)) if carries(values) or is_labelled(values) else values)]
-    elif is_labelled(values):
+    elif is_labelled(values) or (hasattr(values, "to_numpy") and getattr(values, "ndim", 0) == 1):
         values = np.asarray(values)
+    elif isinstance(values, Iterator):
+        values = list(values)
     if isinstance(values, Mapping):
         pairs = [(label(key), value) for key, value in values.items()]
     elif isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):
@@ -286,11 +298,11 @@ def _common(case: Any, names: list[str]) -> tuple[dict[str, Any], Walk]:
     if callable(case) and not isinstance(case, (str, os.PathLike)):
         base, walk = base_of_function(case, {})
         return {"function": case, "base": base}, walk
+    path, text = source(case)
     try:
-        path, text = source(case)
         whole = Path(path).read_text(encoding="utf-8") if text is None else text
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"the case {getattr(error, 'filename', None) or case} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+    except UnicodeDecodeError as error:
+        raise CaseError(f"the case {case} cannot be read: {error}") from None
     directory = os.path.abspath(os.path.dirname(path) if text is None else path)
     return {"case": whole, "directory": directory, "base": base_of_case(whole, directory)}, Walk()
 

@@ -20,9 +20,10 @@ from ._findings import findings_of, warn, warn_caller
 from ._grid import OnGrid
 from ._histories import one_of
 from ._parameters import call, parameters
+from ._steps import Operation, operations, with_steps
 from ._sealed import Named, ReadOnlyArrays
 from ._spoken import spoken
-from ._units import carries, factor_of, is_labelled, variable_of
+from ._units import carries, factor_of, has_unit, is_angle, is_labelled, variable_of
 from ._words import Axis, Edge, Fill, Form, Resampling, Window
 from .plot import SurfacePlots
 
@@ -105,12 +106,20 @@ class Surface(OnGrid, Named):
 
     @property
     def _origin(self) -> list[dict[str, Any]]:
-        """The parts, as those of a case, that it was made or read from; what was done to them since is in the history."""
-        return list(self.__dict__.get("_from", [{"kind": "array"}]))
+        """The parts, as those of a case, that it was made or read from, a file with the steps that were done to it."""
+        parts, steps = self.__dict__.get("_from", [{"kind": "array"}]), self.__dict__.get("_steps", [])
+        return [with_steps(parts[0], steps)] if steps else list(parts)
 
-    def _of(self, origin: list[dict[str, Any]]) -> Surface:
-        """The surface itself, of this origin."""
-        object.__setattr__(self, "_from", origin)
+    @property
+    def _since(self) -> list[str]:
+        """The steps of the history that its parts do not say; a file holds the steps before it was written."""
+        return [] if self.__dict__.get("_steps") else list(self.__dict__.get("_done", []))
+
+    def _of(self, origin: list[dict[str, Any]], since: Sequence[str] = (), steps: list[Operation] | None = None) -> Surface:
+        """The surface itself, of this origin and what was done since, in words and, of a file alone, as steps."""
+        of_file = [part["kind"] for part in origin] == ["file"]
+        for name, value in (("_from", origin), ("_done", list(since)), ("_steps", steps if of_file else None)):
+            object.__setattr__(self, name, value)
         return self
 
     # Operators of numpy arrays leave a surface to its own.
@@ -125,7 +134,7 @@ class Surface(OnGrid, Named):
         object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
-        made = {name: self.__dict__[name] for name in ("_made", "_from") if name in self.__dict__} or None
+        made = {name: self.__dict__[name] for name in ("_made", "_from", "_done", "_steps") if name in self.__dict__} or None
         return functools.partial(Surface, size=self.size, metadata=self.metadata), (self.heights,), made
 
     @property
@@ -164,7 +173,7 @@ class Surface(OnGrid, Named):
         known: dict[str, Any] = {key: one.metadata[key] for one in (self, other) for key in ("format", "single") if key in one.metadata}
         if done := [*self.history, *other.history]:
             known["history"] = done
-        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin])
+        return Surface(self.heights + other.heights, size=self.size, metadata=known)._of([*self._origin, *other._origin], [*self._since, *other._since])
 
     def __radd__(self, other: Summand) -> Surface:
         if isinstance(other, np.ndarray):
@@ -197,12 +206,14 @@ class Surface(OnGrid, Named):
         return self * (1.0 / share)
 
     def __neg__(self) -> Surface:
-        return self._changed(-self.heights, ["inverted"])
+        return self._changed(-self.heights, ["inverted"], steps=[{"op": "invert"}])
 
-    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None) -> Surface:
-        """The surface with other heights, on which this was done."""
+    def _changed(self, heights: Floats, done: list[str], size: Sequence[float] | None = None, steps: list[Operation] | None = None) -> Surface:
+        """The surface with other heights, on which this was done, in words and as steps."""
+        before = self.__dict__.get("_steps", None if self.__dict__.get("_done") else [])
         changed = Surface(heights, size=self.size if size is None else size, metadata={**self.metadata, "history": [*self.history, *done]})
-        return changed._of(self._origin)
+        parts, words = self.__dict__.get("_from", [{"kind": "array"}]), [*self.__dict__.get("_done", []), *done]
+        return changed._of(parts, words, None if before is None or steps is None else [*before, *steps])
 
     def __pos__(self) -> Surface:
         return self
@@ -247,7 +258,7 @@ class Surface(OnGrid, Named):
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
         heights, size, done = self._compiled.process([str(step) for step in steps])
-        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size)
+        changed = self._changed(heights[:, 0] if self.is_line else heights, done, size, operations([str(step) for step in steps]))
         for step in done:
             if step.startswith("crop"):
                 changed.metadata.pop("repeats", None)
@@ -257,7 +268,7 @@ class Surface(OnGrid, Named):
 
     def level(self, form: Form = "plane") -> Surface:
         """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
-        return self.process(f"level={form}")
+        return self.process(f"level form={form}")
 
     def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
         """Spikes become undefined: points beyond the lines through their neighbours at `radius` cells by more than `threshold`
@@ -298,7 +309,7 @@ class Surface(OnGrid, Named):
 
     def flip(self, axis: Axis) -> Surface:
         """Mirrored along "x" or "y"."""
-        return self.process(f"flip={axis}")
+        return self.process(f"flip axis={axis}")
 
     def rotate(self, turns: int = 1, /, *, quarter_turns: int | None = None) -> Surface:
         """Turned by quarter turns of 90 degrees from x towards y; negative ones turn back. More than 3 need the name `quarter_turns`.
@@ -307,11 +318,14 @@ class Surface(OnGrid, Named):
         >>> asp.Surface(np.array([[1.0, 2.0], [3.0, 4.0]]), size=(1e-6, 1e-6)).rotate(quarter_turns=1).heights.tolist()
         [[2.0, 4.0], [1.0, 3.0]]
         """
-        whole = count("quarter_turns", turns if quarter_turns is None else quarter_turns, -(2**31))
+        given: Any = turns if quarter_turns is None else quarter_turns
+        # An angle says itself how many they are.
+        given = round(angle("quarter_turns", given) / (np.pi / 2), 9) if has_unit(given) and is_angle(given) else given
+        whole = count("quarter_turns", given, -(2**31))
         if quarter_turns is None and abs(whole) > 3:
             nearest = f" ({whole} degrees are rotate({whole // 90}))" if whole % 90 == 0 and abs(whole) <= 270 else ""
             raise CaseError(f"rotate turns by quarter turns, and {whole} of them are meant for degrees{nearest}; else write rotate(quarter_turns={whole})")
-        return self.process(f"rotate={whole}")
+        return self.process(f"rotate quarter_turns={whole}")
 
     def invert(self) -> Surface:
         """Heights of the other sign: a replica."""
@@ -329,7 +343,7 @@ class Surface(OnGrid, Named):
         >>> whole.heights[0].tolist(), whole.heights[:, 0].tolist(), whole.size
         ([1.0, 2.0, 2.0, 1.0], [1.0, 3.0, 3.0, 1.0], (4e-06, 4e-06))
         """
-        return self.process("border=mirror")
+        return self.process("border method=mirror")
 
     def window(self, shape: Window = "tukey", *, share: float | None = None) -> Surface:
         """Faded to zero at the edges by a "tukey" window that rises over a `share` of the length (0.1), or a "hann" one.
@@ -492,7 +506,7 @@ class Surface(OnGrid, Named):
 
     @staticmethod
     def read(
-        path: AnyPath, *, size: Size = None, height_unit: float | None = None,
+        path: AnyPath, *, size: Size = None, height_unit: float | str | None = None,
         channel: str | int | None = None, level: Form | None = None, fill: Fill | None = None, transpose: bool | None = None
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
@@ -503,7 +517,7 @@ class Surface(OnGrid, Named):
             PLU, IBW, NID, FRT; also packed by gzip. Other formats are read by the package SurfaceTopography where it is
             installed; the metadata say so under "reader".
         size : lengths along x and y [m], or the length of a profile, needed where the file holds none
-        height_unit : unit of the numbers in the file [m], needed if the file does not state it
+        height_unit : unit of the numbers in the file, "um" or in m (1e-6), needed if the file does not state it
         channel : which one, by name or number (from 0), where the file holds several; by default the first of heights.
             ``surface.metadata["channels"]`` lists them.
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
@@ -521,7 +535,7 @@ class Surface(OnGrid, Named):
         """
         path = os.fspath(path)
         given = None if size is None else list(lengths("size", size))
-        unit = None if height_unit is None else number("height_unit", height_unit)
+        unit = None if height_unit is None else factor_of("height_unit", height_unit, "m") if isinstance(height_unit, str) else number("height_unit", height_unit)
         name = None if channel is None else str(channel)
         try:
             found = _core.read_surface(path, given, unit, name)
@@ -540,10 +554,12 @@ class Surface(OnGrid, Named):
             heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
             found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
-        how = {"size": given, "height_unit": unit, "channel": name, "transpose": transpose, "level": level or "none", "fill": fill}
-        surface._of([{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}])
+        how = {"size": given, "height_unit": _named(unit), "channel": name, "level": level or "none", "fill": fill}
+        origin = [{"kind": "file", "path": path, **{key: value for key, value in how.items() if value is not None}}]
         surface = surface if level is None else surface.level(level)
-        return surface if fill is None else surface.fill(fill)
+        surface = surface if fill is None else surface.fill(fill)
+        # A case reads the lines of a file along x.
+        return surface._of(origin, ["transposed"] if transpose else [], None if transpose else [])
 
     @staticmethod
     def self_affine(
@@ -716,6 +732,11 @@ def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict
         article = "surface" if what == "heights" else what
         raise CaseError(f"the {article} is an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
     return value, size, {}
+
+
+def _named(unit: float | None) -> str | None:
+    """A unit of heights as a case names it."""
+    return None if unit is None else {1.0: "m", 1e-3: "mm", 1e-6: "um", 1e-9: "nm"}.get(unit, f"{unit!r} m")
 
 
 def _of_topography(topography: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 from ._arrays import ArrayLike, Floats, as_plane, number
 from ._core import CaseError
 from ._declared import Table
-from ._histories import History, as_history, one_of
+from ._histories import Function, History, one_of
+from ._sealed import Named
 from ._surface import Surface, per_cell
+from ._units import is_labelled
 from ._words import Coupled
 
 
@@ -43,21 +46,21 @@ class Friction(Table):
 
 
 @dataclass(frozen=True, repr=False)
-class Tangential:
+class Tangential(Named):
     """A load along the surfaces: see :func:`asperity.tangential`."""
 
     control: str
     #: Its components along x and y over time; numbers are held from t = 0 on.
-    course: tuple[History | float, History | float]
+    course: tuple[History | Function | float, History | Function | float]
 
     def __repr__(self) -> str:
         return f"tangential({self.control}={self.course!r})"
 
-    def _keys(self, line: bool) -> dict[str, Any]:
-        """The keys of `[tangential]`."""
+    def _keys(self, line: bool, history: Callable[[str, Any, str], dict[str, Any]]) -> dict[str, Any]:
+        """The keys of `[tangential]`; `history` gives the keys of one."""
         unit = ("N/m" if line else "N") if self.control == "force" else "m"
-        course = [as_history(f"{self.control} along {axis}", value, unit) for axis, value in zip("xy", self.course)]
-        return {"control": self.control, "x": course[0]._keys, "y": course[1]._keys}
+        x, y = (history(f"{self.control} along {axis}", value, unit) for axis, value in zip("xy", self.course))
+        return {"control": self.control, "x": x, "y": y}
 
 
 def tangential(*, force: Any = None, displacement: Any = None) -> Tangential:
@@ -65,7 +68,7 @@ def tangential(*, force: Any = None, displacement: Any = None) -> Tangential:
 
     Parameters
     ----------
-    force, displacement : one of the two [N, of a line contact N/m; m]: a number or a history (step, ramp, triangle, sine, table ...) along
+    force, displacement : one of the two [N, of a line contact N/m; m]: a number, a history (step, ramp, triangle, sine, table ...) or a function of time [s] along
         x, or a pair of them, along x and y. A force or displacement other than 0 at the start acts suddenly at t = 0.
 
     >>> import asperity as asp
@@ -78,7 +81,14 @@ def tangential(*, force: Any = None, displacement: Any = None) -> Tangential:
     True
     """
     control, value = one_of({"force": force, "displacement": displacement}, "give")
-    course = tuple(value) if isinstance(value, (tuple, list)) and len(value) == 2 and not np.ndim(value) == 2 else (value, 0.0)
+    course = tuple(value) if _is_pair(value) else (value, 0.0)
     if any(one is None for one in course):
         raise CaseError(f"{control} is {value!r}, but must be a number or a history along x, or a pair of them, along x and y")
     return Tangential(control, (course[0], course[1]))
+
+
+def _is_pair(value: Any) -> bool:
+    """Whether it has one part along x and one along y; two points of a table are no pair."""
+    if isinstance(value, (tuple, list)):
+        return len(value) == 2 and not all(isinstance(part, (tuple, list)) for part in value)
+    return getattr(value, "ndim", 0) == 1 and len(value) == 2 and not is_labelled(value) and not hasattr(value, "index")

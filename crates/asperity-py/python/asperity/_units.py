@@ -19,7 +19,7 @@ UNITS: dict[str, str] = {
     name: unit
     for unit, names in {
         "m": "size, center, corner, sides, wavelength, amplitude, radius, radius_x, radius_y, heights, gap, initial gap, depth, depths, thickness, "
-        "thickness of a layer, height, height_unit, smallest_gap, longest, shortest, roll_off, rms_height, largest_gap, depth_limit, x, y, approach, path, range, "
+        "thickness of a layer, height, height_unit, deflection, smallest_gap, longest, shortest, roll_off, rms_height, largest_gap, depth_limit, x, y, approach, path, range, "
         "radius_uncertainty, thickness_uncertainty",
         "Pa": "young, young_kelvin, young_equilibrium, young_instantaneous, shear, shear_kelvin, shear_equilibrium, shear_instantaneous, E, modulus, "
         "bulk_modulus, contact_modulus, shear_moduli, equilibrium, equilibrium modulus, instantaneous modulus, relaxation modulus, storage modulus, "
@@ -32,7 +32,7 @@ UNITS: dict[str, str] = {
         "m^2/N": "coefficient",
         "W/(m K)": "conductivity",
         "m^2/s": "diffusivity",
-        "N": "load",
+        "N": "load, force",
         "N/m": "spring_constant, spring_constant_uncertainty",
         "J/m^2": "work",
         "Pa s": "viscosity",

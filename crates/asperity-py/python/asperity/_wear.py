@@ -6,10 +6,13 @@ from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
+import numpy as np
 
-from ._arrays import ArrayLike, Floats, as_plane
+from ._arrays import ArrayLike, Floats, as_plane, number
 from ._declared import Table
+from ._findings import warn_caller
 from ._surface import Surface, per_cell
+from ._units import has_unit
 
 
 @dataclass(frozen=True, repr=False)
@@ -38,6 +41,15 @@ class Wear(Table):
     cycles_per_step: float = 1.0
     cycles_tolerance: float | None = None
     depth_limit: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        most = float(np.max(np.abs(self.coefficient)))
+        if most > 1e-9:
+            warn_caller(f"the coefficient of wear is {most:g} m2/N: usual ones are below 1e-11, and 1 mm^3/(N m) is 1e-9 m2/N [unlikely-unit]")
+        # A plain number, as the others; a labelled array is a history.
+        if has_unit(self.velocity) and np.size(getattr(self.velocity, "magnitude", self.velocity)) == 1:
+            object.__setattr__(self, "velocity", number("velocity", self.velocity))
 
     def _parts(self, shape: Surface, history: Callable[[str, Any], dict[str, Any]]) -> tuple[dict[str, Any], dict[str, Floats]]:
         """The keys of `[wear]`, and the arrays that they name; `history` gives the keys of one."""

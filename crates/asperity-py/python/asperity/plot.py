@@ -38,7 +38,7 @@ def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
 #: Where bodies do not touch, in a map of the pressure; and where they do, in one of the gap.
 _LIGHT = "#f0f0ee"
 #: Labels of the contact states, by number.
-_STATES = {0: ("open", _LIGHT), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00")}
+_STATES = {0: ("open", _LIGHT), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00"), 3: ("slips", "#009e73")}
 #: Gaps below this share of the largest undeformed gap, or of the approach, are rounding errors: the gap is closed.
 _ROUNDING = 1e-12
 
@@ -78,7 +78,9 @@ class Plots:
     def __repr__(self) -> str:
         fields = {*self._result.fields}
         there = {name: name in fields for name in ("pressure", "gap", "displacement", "flattening")}
-        there |= {"friction": "friction_coefficient" in self._result._table, "leak": bool(self._result._leaks) or "gap" in fields, "profile": bool(fields)}
+        rows = {"friction": "friction_coefficient", "tangential_loop": "tangential_force", "wear": "wear_volume"}
+        there |= {name: column in self._result._table for name, column in rows.items()}
+        there |= {"leak": bool(self._result._leaks) or "gap" in fields, "profile": bool(fields)}
         there |= dict.fromkeys(("contact", "spots"), bool({"pressure", "contact"} & fields))
         return _told(self, frozenset(name for name, drawn in there.items() if not drawn))
 
@@ -239,8 +241,38 @@ class Plots:
         """Map of the permanent flattening, as :meth:`displacement`."""
         return self._map("flattening", "viridis", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
 
+    def field(
+        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
+    ) -> Axes:
+        """Map of any field that the result keeps, as :meth:`displacement`, such as "traction_x" or "wear_depth"; numbers of both signs have
+        0 in the middle of their colours."""
+        own = {"pressure": self.pressure, "gap": self.gap, "contact": self.contact}.get(name)
+        if own is not None:
+            return own(time=time, velocity=velocity, index=index, ax=ax, **style)
+        return self._map(name, "viridis", _At(time=time, velocity=velocity, index=index, method="nearest"), ax, style)
+
+    def tangential_loop(self, *, axis: Axis = "x", ax: Axes | None = None, **style: Any) -> Axes:
+        """Tangential force over tangential displacement along an axis, of a contact with friction."""
+        choice("axis", axis, ("x", "y"))
+        result, n = self._result, "xy".index(axis)
+        force, displacement = result.tangential_force[:, n], result.tangential_displacement[:, n]
+        return _over_displacement((displacement, "tangential displacement"), (force, "tangential force", result.units("tangential_force")), ax, style)
+
+    def wear(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> AnyArray:
+        """Worn volume, largest worn depth, roughness of the worn surfaces and largest pressure over time, of a contact that wears: four axes, as
+        :meth:`evolution`."""
+        result = self._result
+        volumes = {"of both bodies": result.wear_volume, "of the counterbody": result.counterbody_wear_volume} if "counterbody_wear_volume" in result._table else {"": result.wear_volume}
+        panels = [
+            _Panel("worn volume", result.units("wear_volume"), volumes),
+            _Panel("worn depth", "m", {"": result.wear_depth_max}),
+            _Panel("roughness Sq", "m", {"": result.worn_roughness}),
+            _Panel("largest pressure", "Pa", {"": result.max_pressure}),
+        ]
+        return self._over_rows("wear", panels, axes, log_time, label, style)
+
     def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
-        """Map of the contact state: open, in contact, at the hardness."""
+        """Map of the contact state: open, in contact, at the hardness, and of a contact with friction where it slips."""
         from matplotlib.colors import ListedColormap
         from matplotlib.patches import Patch
 
@@ -253,7 +285,7 @@ class Plots:
             _name_states(ax, states)
             return ax
         colours = [colour for _, colour in _STATES.values()]
-        _draw.draw_map(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})
+        _draw.draw_map(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": len(colours) - 1, **style})
         if not {"cmap", "norm"} & style.keys():
             held = [_STATES[state] for state in _STATES if np.any(states == state)]
             handles = [Patch(facecolor=colour, edgecolor="k", linewidth=0.4, label=name) for name, colour in held]
@@ -299,7 +331,7 @@ class Plots:
             curves = [({"label": "now", **style}, values), ({"label": "undeformed", "color": "0.5", "linestyle": "--"}, result.initial_gap[along])]
         ax = _draw.axes(ax, style)
         x = _draw.scale(ax, "x", "x", "m", result.size[0])
-        factor = _draw.scale(ax, "y", name, FIELDS[name].unit, *(course for _, course in curves))
+        factor = _draw.scale(ax, "y", name.replace("_", " "), FIELDS[name].unit, *(course for _, course in curves))
         for given, course in curves:
             ax.plot(result.x * x, course * factor, **_marked(given, course))
         _draw.settle(ax)
@@ -324,10 +356,12 @@ class Plots:
         light, told = _light(name, values, style)
         if name == "pressure" and self._result._setup.get("adhesion"):
             style, told = _about_zero(values, given), "below 0: the surfaces pull at each other"
+        elif name not in ("pressure", "gap", "displacement") and np.nanmin(values) < 0 < np.nanmax(values):
+            style = _about_zero(values, given)
         self._tell(ax, at, notes=[_draw.stretched(size, style), told])
         image = _draw.draw_map(ax, values, size, {**(style if name == "pressure" else _draw.robust(values, style)), **light})
         if not light or "vmax" in style or np.any(values > 0):
-            _draw.bar(ax, image, name, unit)
+            _draw.bar(ax, image, name.replace("_", " "), unit)
         return ax
 
     def _row(self, at: _At) -> int:
@@ -528,11 +562,17 @@ class SurfacePlots:
 
 
 def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
-    ax = _draw.axes(ax, style)
-    across, along = _draw.scale(ax, "y", "load", unit, load), _draw.scale(ax, "x", "approach", "m", approach)
-    if not np.any(load) and not ax.lines and "label" not in style:
+    if not np.any(load) and not (ax is not None and ax.lines) and "label" not in style:
         style = {**style, "label": "nothing touches"}
-    ax.plot(approach * along, load * across, **_marked(style, approach, load))
+    return _over_displacement((approach, "approach"), (load, "load", unit), ax, style)
+
+
+def _over_displacement(along: tuple[Any, str], across: tuple[Any, str, str], ax: Axes | None, style: dict[str, Any]) -> Axes:
+    """A load over a displacement [m], both with their names, the load with its unit."""
+    (displacement, name), (load, force, unit) = along, across
+    ax = _draw.axes(ax, style)
+    up, right = _draw.scale(ax, "y", force, unit, load), _draw.scale(ax, "x", name, "m", displacement)
+    ax.plot(displacement * right, load * up, **_marked(style, displacement, load))
     _draw.settle(ax)
     _draw.settle(ax, "x")
     _draw.name_runs(ax, style)

@@ -263,16 +263,7 @@ def test_an_angle_says_itself_how_many_quarter_turns_it_is():
         ball.rotate(45 * u.deg)
 
 
-def test_a_case_takes_arrays_and_a_study_takes_columns(tmp_path):
-    keys = {
-        "domain": {"cells": np.array([8, 8]), "size": np.array([1e-3, 1e-3])},
-        "surface": [{"kind": "sphere", "radius": 1e-2}],
-        "body": [{"poisson": 0.5, "material": {"model": "elastic", "young": 1e6}}],
-        "load": {"control": "load", "history": {"kind": "table", "points": np.array([[0.0, 0.0], [1.0, 1e-3]])}},
-        "time": {"end": 1.0, "steps": 2},
-    }
-    result = asp.run(keys, output=tmp_path / "case.zarr", progress=False)
-    assert result.cells == (8, 8) and np.allclose(result.load, [0.0, 5e-4, 1e-3])
+def test_a_study_takes_columns():
     pandas = pytest.importorskip("pandas", reason="pandas is not installed")
     pytest.importorskip("xarray")
     ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)

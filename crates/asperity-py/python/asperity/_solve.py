@@ -418,22 +418,13 @@ def check(case: Case, *, set: Changes = None) -> dict[str, Any]:
 def source(case: Case) -> tuple[str, str | None]:
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
-        return os.curdir, _core.case_text({str(key): _listed(value) for key, value in case.items()})
+        return os.curdir, _core.case_text(dict(case))
     if isinstance(case, str) and "\n" in case:
         return os.curdir, case
     path = os.fspath(case)
     if not os.path.exists(path):
         raise NotThere(errno.ENOENT, "there is no case file of this name", path)
     return path, None
-
-
-def _listed(value: Any, depth: int = 32) -> Any:
-    """Keys of a case with lists in place of arrays. What is deeper than any case is left as it is."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if depth and isinstance(value, Mapping):
-        return {key: _listed(one, depth - 1) for key, one in value.items()}
-    return [_listed(one, depth - 1) for one in value] if depth and isinstance(value, (list, tuple)) else value
 
 
 def overrides(given: Mapping[str, Any] | Sequence[str] | None) -> list[str]:

@@ -222,7 +222,7 @@ class ForceCurve(ReadOnlyArrays):
         rows = np.concatenate([np.arange(segment.start, segment.stop) for segment in chosen])
         ends = np.cumsum([segment.stop - segment.start for segment in chosen]).tolist()
         moved = tuple(replace(segment, start=start, stop=stop) for segment, start, stop in zip(chosen, [0, *ends], ends))
-        picked = {name: None if (of := getattr(self, name)) is None else of[rows] for name in ("force", "depth", "deflection", "height", "time")}
+        picked: dict[str, Any] = {name: None if (of := getattr(self, name)) is None else of[rows] for name in ("force", "depth", "deflection", "height", "time")}
         return ForceCurve(**picked, segments=moved, metadata=dict(self.metadata))
 
     def __repr__(self) -> str:

@@ -27,6 +27,8 @@ const STEP: f64 = 1e-5;
 /// Values of λ from which the search begins, and its limits: beyond, DMT and JKR differ from Maugis' model by less than any record.
 const STARTS: [f64; 3] = [0.15, 0.8, 4.0];
 const LAMBDA: [f64; 2] = [1e-3, 300.0];
+/// Scatters in contact and off it that differ by this many of their standard errors are two.
+const SAME: f64 = 2.0;
 /// Fewer rows in contact, or free ones, have the scatter of all.
 const OWN: usize = 8;
 /// Degrees of freedom at least: where fewer are left the correlation itself is not known.
@@ -517,6 +519,13 @@ impl<'a> Problem<'a> {
             true => [of(apart, parameters); 2],
             false => [of(contact, parameters - of_line), of(free, of_line)],
         };
+        // Two that differ by no more than their own errors are one, which all rows tell.
+        let error =
+            [self.rows.contact.len(), apart.len() - self.rows.contact.len()].map(|n| 0.5 / n.max(1) as f64);
+        if (contact[0] / free[0]).ln().abs() < SAME * (error[0] + error[1]).sqrt() {
+            let all = of(apart, parameters);
+            return [[all[0]; 2], [all[1]; 2]];
+        }
         [[contact[0], free[0]], [contact[1], free[1]]]
     }
 

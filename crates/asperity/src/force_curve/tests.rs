@@ -139,9 +139,10 @@ fn notes_name_what_may_be_wrong() {
     assert!(note(&far, "Tabor"), "{:?}", far.notes);
     let dmt = fit(ForceModel::Dmt, &curve(ForceModel::Dmt, 200, [2e-9, 1e-9], 3), ForceOptions::default());
     assert!(note(&dmt, "Tabor"), "{:?}", dmt.notes);
-    // A baseline that bends by 20 nN from its middle to its ends, over 1 um.
+    // A baseline that bends by 20 nN from its middle to its ends, over the free half of a micrometre.
     let [loads, depths] = curve(ForceModel::Jkr, 300, [2e-9, 1e-9], 3);
-    let bent = loads.iter().zip(&depths).map(|(w, d)| w + 20e-9 * ((d + 0.3e-6) / 0.5e-6).powi(2)).collect();
+    let bend = |d: f64| if d < -0.3e-6 { ((d + 0.55e-6) / 0.25e-6).powi(2) } else { 1.0 };
+    let bent = loads.iter().zip(&depths).map(|(w, d)| w + 20e-9 * bend(*d)).collect();
     assert!(note(&fit(ForceModel::Jkr, &[bent, depths], ForceOptions::default()), "bends"));
     let rough = fit(ForceModel::Jkr, &curve(ForceModel::Jkr, 200, [2e-9, 3e-8], 3), ForceOptions::default());
     assert!(note(&rough, "noise of the depth"), "{:?}", rough.notes);

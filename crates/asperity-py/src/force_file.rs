@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use asperity_io::curve::{Calibration, InstrumentCurve, read_curve_file};
+use asperity_io::topography::Problem;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::Answer;
+use crate::error::{Answer, Failure};
 use crate::given::Dict;
 use crate::wait::detached;
 
@@ -19,7 +20,12 @@ pub fn read_force_file<'py>(
     spring_constant: Option<f64>,
     sensitivity: Option<f64>,
 ) -> Answer<Option<Vec<Dict<'py>>>> {
-    let read = detached(py, || read_curve_file(&path, Calibration { spring_constant, sensitivity }))??;
+    let read = detached(py, || read_curve_file(&path, Calibration { spring_constant, sensitivity }))?;
+    // What a file holds is a matter of the curves, not of the system.
+    let read = read.map_err(|error| match error.problem {
+        Problem::Io(_) => Failure::from(error),
+        _ => Failure::case(error),
+    })?;
     let Some(curves) = read else { return Ok(None) };
     Ok(Some(curves.into_iter().map(|curve| of(py, curve)).collect::<PyResult<_>>()?))
 }

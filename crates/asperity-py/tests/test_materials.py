@@ -488,7 +488,7 @@ def test_materials_tell_their_parameters_and_functions_in_short():
     ],
 )
 def test_a_fractional_model_asks_for_its_window(made):
-    with pytest.raises(asp.CaseError, match=r"needs window=\(first, last\)"):
+    with pytest.raises(asp.CaseError, match=r"give window=\(first, last\)"):
         made()
 
 

@@ -181,7 +181,7 @@ def test_a_sweep_has_stress_and_leak_of_each_velocity() -> None:
     pytest.importorskip("xarray")
     whole = sweep.leakage(direction="y")
     one = sweep.leakage(direction="y", velocity=0.1)
-    assert one.leak_time.values.tolist() == [0.1] and one.hydraulic_gap.item() == whole.hydraulic_gap.values[1]
+    assert one.leak_velocity.values.tolist() == [0.1] and one.hydraulic_gap.item() == whole.hydraulic_gap.values[1]
     with pytest.raises(asp.CaseError, match="velocity= is for a sweep"):
         sweep.stress(time=1.0)
     for course in ([(1e-3, 1e3), (1.0, 1e4)], {"peak": 1e4}):

@@ -122,7 +122,7 @@ impl Document {
     pub(super) fn arrays(&self) -> Vec<ArraySpec> {
         let (grid, Progress { rows, maps, .. }) = (&self.header.grid, &self.progress);
         let mut arrays = layout::arrays(&self.header, *rows, *maps);
-        arrays.extend(self.stress.iter().flat_map(|set| set.arrays(grid, *maps)));
+        arrays.extend(self.stress.iter().flat_map(|set| set.arrays(&self.header, *maps)));
         arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(grid)));
         arrays.into_iter().map(|array| array.of_form(self.form)).collect()
     }

@@ -1,9 +1,8 @@
 //! The arrays of the stress below the surface. They are added to a result once its pressures are stored. Their dimension is
-//! `field_time`; instants at which the stress was not computed are NaN.
+//! `field_time`, of a sweep over velocities `field_velocity`; instants at which the stress was not computed are NaN.
 
 use std::path::{Path, PathBuf};
 
-use asperity::Grid;
 use asperity::stress::{Rolling, StressQuantity};
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
@@ -13,6 +12,7 @@ use super::chunks::Chunks;
 use super::column::Column;
 use super::document::Document;
 use super::error::{Result, corrupt};
+use super::header::Header;
 use super::layout::{ArraySpec, Series, Storage, cells};
 use super::reader::{At, Reader, holds};
 use super::writer::{Writer, lock, remove};
@@ -120,8 +120,9 @@ impl StressSet {
     }
 
     /// The arrays of a result with `maps` instants of fields.
-    pub(super) fn arrays(&self, grid: &Grid, maps: usize) -> Vec<ArraySpec> {
-        let (map, depth) = (("field_time", maps), (DEPTH, self.depths.len()));
+    pub(super) fn arrays(&self, header: &Header, maps: usize) -> Vec<ArraySpec> {
+        let (map, depth) = ((header.stored("field_time"), maps), (DEPTH, self.depths.len()));
+        let grid = &header.grid;
         let depths = Series::new(DEPTH, "m", "depth below the surface");
         let mut arrays = vec![ArraySpec::new(depths, Storage::Whole, &[depth])];
         let rows = |series, over: &[_]| ArraySpec::new(series, Storage::Rows, over);
@@ -161,7 +162,7 @@ impl StressWriter {
     /// Starts the arrays in the result of `writer`.
     pub fn new(writer: &Writer, set: &StressSet) -> StressWriter {
         let Document { header, form, progress, .. } = &writer.document;
-        let specs = set.arrays(&header.grid, progress.maps);
+        let specs = set.arrays(header, progress.maps);
         let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(*form)).collect();
         let unknown = |spec: &ArraySpec| vec![f64::NAN; spec.shape()[1..].iter().product()];
         let rows = rows_of(&specs).map(|spec| vec![unknown(spec); progress.maps]).collect();

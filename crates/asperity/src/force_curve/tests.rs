@@ -151,7 +151,7 @@ fn notes_name_what_may_be_wrong() {
     let [loads, depths] = curve(ForceModel::Jkr, 200, [0.0, 0.0], 3).map(|column| column[..75].to_vec());
     let loads: Vec<f64> = loads.iter().map(|w| w - 3e-9).collect();
     let cut = fit(ForceModel::Jkr, &[loads, depths], ForceOptions::default());
-    assert!(note(&cut, "outside of the record"), "{:?}", cut.notes);
+    assert!(note(&cut, "does not show the free sphere"), "{:?}", cut.notes);
     // A cantilever of 1 mN/m.
     let soft = fit(
         ForceModel::Jkr,

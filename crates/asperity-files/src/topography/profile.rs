@@ -250,7 +250,11 @@ mod tests {
         // One unit for all is told; not where a line above the numbers names one.
         let told = profile_of(text.as_bytes(), &unit_of(1e-6)).unwrap().history;
         assert!(told[0].contains("unit given for the heights"), "{told:?}");
-        for above in ["Einheit x: mm", "Position in mm, height in um", "Scan: 3 µm"] {
+        // A line that names both columns is their heading.
+        let headed =
+            profile_of(format!("Position in mm, height in um\n{text}").as_bytes(), &unit_of(1e-6)).unwrap();
+        assert!((headed.surface.grid().size()[0] / 4e-3 - 1.0).abs() < 1e-12);
+        for above in ["Einheit x: mm", "Scan: 3 µm"] {
             let asked = message(&format!("{above}\n{text}"), &unit_of(1e-6));
             assert!(asked.contains("--size") && asked.contains(above), "{asked}");
         }
